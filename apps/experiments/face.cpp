@@ -27,7 +27,7 @@ struct Ratio {
 
 const Measure& measure_of(const Annotation& part) {
     for (const Attribute& attribute : part.attributes)
-        if (attribute.type == AttributeType::measure && attribute.name == "length") return attribute.measure;
+        if (attribute.measure() != nullptr && attribute.name == "length") return *attribute.measure();
     fail_input(part.tag, "has no measure called length", "see the recipe that the experiment names");
 }
 

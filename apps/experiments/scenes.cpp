@@ -141,17 +141,14 @@ Relationship constraint(int id, const std::string& type, std::vector<int> member
 }
 
 double add_height(const Mesh& mesh, Annotation& part, const std::string& name) {
-    Attribute height;
-    height.id = 50;
-    height.name = name;
-    height.type = AttributeType::measure;
-    height.measure.tool = "bounding";
-    height.measure.direction = {0, 0, 1};
-    height.measure.unit = "mm";
-    for (const Index pin : extremes(mesh, part, *height.measure.direction)) height.measure.points.push_back(pin);
-    height.measure.value = evaluate(mesh, part, height.measure);
-    part.attributes.push_back(height);
-    return *height.measure.value;
+    Measure height;
+    height.tool = "bounding";
+    height.direction = {0, 0, 1};
+    height.unit = "mm";
+    for (const Index pin : extremes(mesh, part, *height.direction)) height.points.push_back(pin);
+    height.value = evaluate(mesh, part, height);
+    part.attributes.push_back({50, name, height});
+    return *height.value;
 }
 
 double degrees_of(const Motion& motion) { return 180 / std::numbers::pi * Eigen::AngleAxisd(motion.rotation).angle(); }

@@ -10,6 +10,8 @@
 #include <cstring>
 #include <memory>
 #include <type_traits>
+#include <utility>
+#include <variant>
 
 namespace ostraka::python {
 
@@ -28,7 +30,6 @@ constexpr bool is_plain<std::array<T, Count>> = is_plain<T>;
 
 /// The last value of an enumeration.
 constexpr AnnotationType last_of(AnnotationType /*any*/) { return AnnotationType::region; }
-constexpr AttributeType last_of(AttributeType /*any*/) { return AttributeType::descriptor; }
 constexpr Information::Kind last_of(Information::Kind /*any*/) { return Information::Kind::file; }
 constexpr ImageFormat last_of(ImageFormat /*any*/) { return ImageFormat::gif; }
 constexpr TextureWrap last_of(TextureWrap /*any*/) { return TextureWrap::mirror; }
@@ -66,6 +67,11 @@ private:
     void put(const std::shared_ptr<const T>& value) {
         put(value != nullptr);
         if (value) put(*value);
+    }
+    template <class... T>
+    void put(const std::variant<T...>& value) {
+        put(static_cast<std::uint8_t>(value.index()));
+        std::visit([this](const auto& alternative) { put(alternative); }, value);
     }
     template <class First, class Second>
     void put(const std::pair<First, Second>& both) {
@@ -144,6 +150,17 @@ private:
         if (has_value) get(content);
         value = has_value ? std::make_shared<const T>(std::move(content)) : nullptr;
     }
+    template <class... T>
+    void get(std::variant<T...>& value) {
+        std::uint8_t index = 0;
+        get(index);
+        if (index >= sizeof...(T)) fail_archive("holds a value that is not allowed");
+        get_alternative(value, index, std::index_sequence_for<T...>());
+    }
+    template <class... T, std::size_t... Alternative>
+    void get_alternative(std::variant<T...>& value, std::size_t index, std::index_sequence<Alternative...> /*all*/) {
+        ((index == Alternative ? get(value.template emplace<Alternative>()) : void()), ...);
+    }
     template <class First, class Second>
     void get(std::pair<First, Second>& both) {
         get(both.first);
@@ -175,13 +192,17 @@ template <class Archive, Is<Measure> T>
 void fields(Archive& archive, T& x) {
     archive(x.tool, x.points, x.locations, x.direction, x.value, x.unit, x.stale, x.exact, x.repeats, x.uncertainty);
 }
+template <class Archive, Is<Note> T>
+void fields(Archive& archive, T& x) {
+    archive(x.text, x.origin);
+}
 template <class Archive, Is<Descriptor> T>
 void fields(Archive& archive, T& x) {
-    archive(x.values, x.is_list, x.file, x.unit, x.stale);
+    archive(x.values, x.is_list, x.file, x.unit, x.stale, x.sha256);
 }
 template <class Archive, Is<Attribute> T>
 void fields(Archive& archive, T& x) {
-    archive(x.id, x.name, x.type, x.note, x.measure, x.descriptor, x.origin);
+    archive(x.id, x.name, x.value);
 }
 template <class Archive, Is<Information> T>
 void fields(Archive& archive, T& x) {

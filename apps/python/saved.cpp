@@ -61,7 +61,7 @@ void fields(Archive& archive, T& x) {
 
 namespace {
 
-constexpr std::string_view magic = "ostraka object 3\n";  ///< includes the version of the format
+constexpr std::string_view magic = "ostraka object 4\n";  ///< includes the version of the format
 constexpr std::size_t digest_size = 64;
 
 /// Type of a saved object. The order is part of the format.

@@ -75,12 +75,16 @@ std::vector<Index> pins_of(const Measure& measure) {
     return pins;
 }
 
+std::vector<Index> pins_of(const Attribute& attribute) {
+    const Measure* measure = attribute.measure();
+    return measure == nullptr ? std::vector<Index>() : pins_of(*measure);
+}
+
 Figures attribute_values(const Attribute& attribute) {
-    const Measure& measure = attribute.measure;
-    const Descriptor& descriptor = attribute.descriptor;
-    if (attribute.type == AttributeType::descriptor) return {descriptor.values, descriptor.unit, descriptor.stale};
-    if (attribute.type == AttributeType::semantic) return {};
-    return {measure.value ? std::vector{*measure.value} : std::vector<double>(), measure.unit, measure.stale};
+    if (const Descriptor* descriptor = attribute.descriptor()) return {descriptor->values, descriptor->unit, descriptor->stale};
+    const Measure* measure = attribute.measure();
+    if (measure == nullptr) return {};
+    return {measure->value ? std::vector{*measure->value} : std::vector<double>(), measure->unit, measure->stale};
 }
 
 std::vector<bool> face_flags(const Mesh& mesh, const std::vector<Index>& faces) {

@@ -101,10 +101,11 @@ void check_attributes(const Annotation& annotation, const Mesh& mesh, const std:
         if (!ids.insert(attribute.id).second)
             fail(where, here + "/id", "the attribute id " + to_string(attribute.id) + " is taken within its annotation",
                  "give each attribute its own id");
-        if (attribute.type == AttributeType::measure) check_measure(attribute.measure, mesh, where, here + "/measure");
-        for (const double value : attribute.descriptor.values)
-            if (!std::isfinite(value))
-                fail(where, here + "/value", "a value is not finite", "give a finite number, or remove the attribute");
+        if (const Measure* measure = attribute.measure()) check_measure(*measure, mesh, where, here + "/measure");
+        if (const Descriptor* descriptor = attribute.descriptor())
+            for (const double value : descriptor->values)
+                if (!std::isfinite(value))
+                    fail(where, here + "/value", "a value is not finite", "give a finite number, or remove the attribute");
     }
 }
 
@@ -204,10 +205,11 @@ std::vector<ReferredFile> referred_files(const AnnotationSet& set) {
         }
         for (std::size_t k = 0; k < annotation.attributes.size(); ++k) {
             const Attribute& attribute = annotation.attributes[k];
-            if (attribute.type != AttributeType::descriptor || attribute.descriptor.file.empty()) continue;
+            const Descriptor* descriptor = attribute.descriptor();
+            if (descriptor == nullptr || descriptor->file.empty()) continue;
             files.push_back({at + "/attributes/" + to_string(k),
                              name_of(annotation) + " has the attribute '" + printable(attribute.name, 60) + "' in the file",
-                             attribute.descriptor.file, attribute.descriptor.sha256});
+                             descriptor->file, descriptor->sha256});
         }
     }
     return files;

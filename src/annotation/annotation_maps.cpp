@@ -321,9 +321,9 @@ void detach_annotations(Mesh& mesh) {
 
 void move_pins(Annotation& annotation, const std::vector<Index>& vertex_map, std::size_t vertex_count) {
     for (auto& attribute : annotation.attributes) {
-        if (attribute.type == AttributeType::descriptor) attribute.descriptor.stale = true;
-        if (attribute.type != AttributeType::measure) continue;
-        Measure& measure = attribute.measure;
+        if (Descriptor* descriptor = attribute.descriptor()) descriptor->stale = true;
+        if (attribute.measure() == nullptr) continue;
+        Measure& measure = *attribute.measure();
         const auto loses_a_pin = [&](std::vector<Index>& pins) {
             bool lost = false;
             for (Index& pin : pins) {
@@ -340,12 +340,11 @@ void move_pins(Annotation& annotation, const std::vector<Index>& vertex_map, std
         measure.stale = true;
         if (!lost) continue;
         // A measure without its pins cannot be recomputed: only its value is kept, as a descriptor.
-        attribute.type = AttributeType::descriptor;
-        attribute.descriptor = {};
-        if (measure.value) attribute.descriptor.values.push_back(*measure.value);
-        attribute.descriptor.unit = measure.unit;
-        attribute.descriptor.stale = true;
-        attribute.measure = {};
+        Descriptor last_value;
+        if (measure.value) last_value.values.push_back(*measure.value);
+        last_value.unit = measure.unit;
+        last_value.stale = true;
+        attribute.value = std::move(last_value);
     }
 }
 

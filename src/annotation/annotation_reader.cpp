@@ -67,21 +67,18 @@ Attribute attribute_of(const JsonValue& object, const std::string& where, const 
         note_unknown(object, {"id", "name", "type", "note", "origin"}, at, notes);
         if (find_member(object, "note") == nullptr)
             fail(where, at, "a semantic attribute without a note", "add the member \"note\"");
-        attribute.note = text_in(object, "note");
-        attribute.origin = text_in(object, "origin");
+        attribute.value = Note{text_in(object, "note"), text_in(object, "origin")};
     } else if (type == "measure") {
         note_unknown(object, {"id", "name", "type", "measure"}, at, notes);
-        attribute.type = AttributeType::measure;
         const JsonValue* measure = find_member(object, "measure");
         if (measure == nullptr) fail(where, at, "an attribute of type measure without a measure", "add the member \"measure\"");
         note_unknown(*measure,
                      {"tool", "points", "locations", "direction", "geodesic", "repeats", "value", "uncertainty", "unit", "stale"},
                      at + "/measure", notes);
-        attribute.measure = measure_of(*measure);
+        attribute.value = measure_of(*measure);
     } else {
         note_unknown(object, {"id", "name", "type", "value", "file", "sha256", "unit", "stale"}, at, notes);
-        attribute.type = AttributeType::descriptor;
-        Descriptor& descriptor = attribute.descriptor;
+        auto& descriptor = attribute.value.emplace<Descriptor>();
         if (const JsonValue* value = find_member(object, "value")) {
             descriptor.is_list = value->IsArray();
             for (const auto& element : list_in(object, "value")) descriptor.values.push_back(element.GetDouble());

@@ -32,23 +32,17 @@ JsonValue json_of(const Measure& measure, JsonAllocator& allocator) {
 
 JsonValue json_of(const Attribute& attribute, JsonAllocator& allocator) {
     JsonValue object = json_object(allocator, "id", attribute.id, "name", attribute.name);
-    switch (attribute.type) {
-        case AttributeType::semantic:
-            add_members(object, allocator, "type", "semantic", "note", attribute.note);
-            add_nonempty_members(object, allocator, "origin", attribute.origin);
-            break;
-        case AttributeType::measure:
-            add_members(object, allocator, "type", "measure", "measure", json_of(attribute.measure, allocator));
-            break;
-        case AttributeType::descriptor: {
-            const Descriptor& descriptor = attribute.descriptor;
-            add_member(object, "type", "descriptor", allocator);
-            if (descriptor.is_list) add_member(object, "value", numbers_of(descriptor.values, allocator), allocator);
-            else if (!descriptor.values.empty()) add_member(object, "value", json_number(descriptor.values.front()), allocator);
-            add_nonempty_members(object, allocator, "file", descriptor.file, "sha256", descriptor.sha256, "unit", descriptor.unit,
-                                 "stale", descriptor.stale);
-            break;
-        }
+    if (const Note* note = attribute.note()) {
+        add_members(object, allocator, "type", "semantic", "note", note->text);
+        add_nonempty_members(object, allocator, "origin", note->origin);
+    } else if (const Measure* measure = attribute.measure()) {
+        add_members(object, allocator, "type", "measure", "measure", json_of(*measure, allocator));
+    } else if (const Descriptor* descriptor = attribute.descriptor()) {
+        add_member(object, "type", "descriptor", allocator);
+        if (descriptor->is_list) add_member(object, "value", numbers_of(descriptor->values, allocator), allocator);
+        else if (!descriptor->values.empty()) add_member(object, "value", json_number(descriptor->values.front()), allocator);
+        add_nonempty_members(object, allocator, "file", descriptor->file, "sha256", descriptor->sha256, "unit", descriptor->unit,
+                             "stale", descriptor->stale);
     }
     return object;
 }

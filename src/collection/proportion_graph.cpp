@@ -37,7 +37,7 @@ Annotation& annotation_of(AnnotationSet& set, const MeasureDefinition& definitio
 
 const Attribute* find_measure(const Annotation& annotation, const std::string& name) {
     for (const Attribute& attribute : annotation.attributes)
-        if (attribute.name == name && attribute.type == AttributeType::measure) return &attribute;
+        if (attribute.name == name && attribute.measure() != nullptr) return &attribute;
     return nullptr;
 }
 

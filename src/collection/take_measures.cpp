@@ -179,26 +179,25 @@ private:
         const Annotation& annotation = require(definition.annotation);
         const Attribute* matching_attribute = nullptr;
         for (const Attribute& attribute : annotation.attributes) {
-            if (attribute.name != definition.attribute || attribute.type == AttributeType::semantic) continue;
+            if (attribute.name != definition.attribute || attribute.note() != nullptr) continue;
             if (matching_attribute != nullptr)
                 throw MissingMeasure{fmt::format("'{}' has two attributes '{}'", annotation.tag, definition.attribute)};
             matching_attribute = &attribute;
         }
         if (matching_attribute == nullptr)
             throw MissingMeasure{fmt::format("'{}' has no measure or descriptor '{}'", annotation.tag, definition.attribute)};
-        if (matching_attribute->type == AttributeType::measure) {
-            if (matching_attribute->measure.stale || !matching_attribute->measure.value)
+        if (const Measure* measure = matching_attribute->measure()) {
+            if (measure->stale || !measure->value)
                 throw MissingMeasure{
                     fmt::format("the value of '{}' is stale: run 'ostraka measure refresh'", definition.attribute)};
-            return in_annotation_unit(*matching_attribute->measure.value, matching_attribute->measure.unit, true);
+            return in_annotation_unit(*measure->value, measure->unit, true);
         }
-        if (matching_attribute->descriptor.stale)
+        const Descriptor& descriptor = *matching_attribute->descriptor();
+        if (descriptor.stale)
             throw MissingMeasure{fmt::format("the value of '{}' is stale: run 'ostraka measure refresh'", definition.attribute)};
-        if (static_cast<std::size_t>(definition.entry) > matching_attribute->descriptor.values.size())
-            throw MissingMeasure{
-                fmt::format("'{}' has {} numbers", definition.attribute, matching_attribute->descriptor.values.size())};
-        return in_annotation_unit(matching_attribute->descriptor.values[static_cast<std::size_t>(definition.entry - 1)],
-                                  matching_attribute->descriptor.unit, false);
+        if (static_cast<std::size_t>(definition.entry) > descriptor.values.size())
+            throw MissingMeasure{fmt::format("'{}' has {} numbers", definition.attribute, descriptor.values.size())};
+        return in_annotation_unit(descriptor.values[static_cast<std::size_t>(definition.entry - 1)], descriptor.unit, false);
     }
     /// A value with its own unit, converted to the unit of the annotations if both are lengths.
     MeasuredValue in_annotation_unit(double value, const std::string& unit, bool length) const {

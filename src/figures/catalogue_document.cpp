@@ -108,7 +108,8 @@ void CatalogueStyle::declare_options(OptionList& list) {
         Choices{"english", "continental", "american"});
     list("section", section, "side of the section; auto: by the convention", Choices{"auto", "left", "right"});
     list("paper", paper, "size of the pages", Choices{"a4", "a3", "letter"});
-    list("sheet", sheet, "draw several objects on a page, all at one scale, instead of one page for each object");
+    list("several-per-page", several_per_page,
+         "draw several objects on a page, all at one scale, instead of one page for each object");
     list("title", title, "title of the catalogue");
 }
 
@@ -126,7 +127,7 @@ struct Catalogue::Content {
         const std::string number = fmt::format("{} / {}", index + 1, layout.pages.size());
         sheet.text(number, page.points_wide() - margin_points, y, 1, 7, {110, 110, 110});
         const double room = page.points_wide() - 2 * margin_points - sheet.width_of(number, 7) - 12;
-        sheet.text(sheet.fitted(style.title.empty() || style.sheet ? source : style.title + "; " + source, room, 6),
+        sheet.text(sheet.fitted(style.title.empty() || style.several_per_page ? source : style.title + "; " + source, room, 6),
                    margin_points, y, 0, 6, {140, 140, 140});
     }
 
@@ -144,7 +145,7 @@ Catalogue::Catalogue(const std::vector<CatalogueEntry>& entries, const Catalogue
     content_->style = style;
     content_->source = std::move(source);
     Layout& layout = content_->layout;
-    if (style.sheet) add_sheets(layout, content_->entries, content_->style);
+    if (style.several_per_page) add_sheets(layout, content_->entries, content_->style);
     else add_object_pages(layout, content_->entries, content_->style);
     content_->table_page = layout.pages.size();
     add_table_pages(layout, catalogue_table(content_->entries, layout.places), content_->style);

@@ -498,7 +498,7 @@ void add_sheets(Layout& layout, const std::vector<CatalogueEntry>& entries, cons
                 return false;
         return true;
     });
-    if (!(scale > 0)) fail_input("catalogue", "an object is too large for a sheet", "leave out --sheet");
+    if (!(scale > 0)) fail_input("catalogue", "an object is too large for a sheet", "leave out --several-per-page");
     std::vector<Cell> cells;
     for (std::size_t i = 0; i < entries.size(); ++i) cells.push_back(cell_of(entries, i, style, scale));
     layout.places.resize(entries.size());

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <stdexcept>
 
 namespace ostraka {
@@ -63,16 +64,29 @@ Call::Call(const OperationEntry& entry) : entry_(&entry), operation_(entry.make(
 Call::~Call() = default;
 Call::Call(Call&&) noexcept = default;
 
+namespace {
+/// The present name of an option that had another name before version 0.2; the name itself if it had no other.
+std::string present_name(const std::string& name, const std::vector<std::string>& names) {
+    static const std::map<std::string, std::string> renamed{
+        {"attributes", "check-attributes"},   {"carry", "colour-neighbours"}, {"deep", "sixteen-bit"},
+        {"facet-edge", "facet-crease-angle"}, {"faint", "min-contrast"},      {"lying", "min-on-template"},
+        {"none", "no-fixed-ratios"},          {"ratio", "max-difference"},    {"sheet", "several-per-page"},
+        {"slack", "min-tolerance"},           {"wide", "background-scale"}};
+    const auto entry = renamed.find(name);
+    if (entry != renamed.end() && std::find(names.begin(), names.end(), entry->second) != names.end()) return entry->second;
+    std::string present = "-" + name + "-";
+    for (const auto& [word, present_word] :
+         {std::pair<std::string, const char*>("-least-", "-min-"), {"-most-", "-max-"}, {"-strangers-", "-out-of-class-"}})
+        if (const auto at = present.find(word); at != std::string::npos) present.replace(at, word.size(), present_word);
+    return present.substr(1, present.size() - 2);
+}
+}  // namespace
+
 void Call::no_such_name(const std::string& name, const std::vector<std::string>& flags) const {
     std::vector<std::string> names = flags;
     for (const Option& option : parameters_.options) names.push_back(option.name);
     for (const Slot* slot : parameters_.slots()) names.push_back(slot->name);
-    // Names before version 0.2.
-    std::string current_name = "-" + name + "-";
-    for (const auto& [word, current_word] :
-         {std::pair<std::string, const char*>("-least-", "-min-"), {"-most-", "-max-"}, {"-strangers-", "-out-of-class-"}})
-        if (const auto at = current_name.find(word); at != std::string::npos) current_name.replace(at, word.size(), current_word);
-    const std::string nearest = nearest_name(current_name.substr(1, current_name.size() - 2), names);
+    const std::string nearest = nearest_name(present_name(name, names), names);
     throw Error(ErrorKind::usage, entry_->name, fmt::format("has no option '{}'", printable(name, 60)),
                 nearest.empty()                     ? fmt::format("'ostraka {} --help' shows them", entry_->name)
                 : nearest == name && !flags.empty() ? "options begin with --"

@@ -168,16 +168,12 @@ private:
             fail("stale", "is neither true nor false", "correct the cell");
         const bool is_stale = lower_case(stale) == "true";
         if (kind == "semantic") {
-            attribute.note = cell("note");
-            attribute.origin = cell("origin");
+            attribute.value = Note{cell("note"), cell("origin")};
         } else if (kind == "measure") {
-            attribute.type = AttributeType::measure;
-            attribute.measure = measure();
-            attribute.measure.stale = is_stale;
+            attribute.value = measure(is_stale);
         } else if (kind == "descriptor" || kind == "list") {
-            attribute.type = AttributeType::descriptor;
-            attribute.descriptor = {numbers("value"), kind == "list", cell("file"), cell("unit"), is_stale, cell("sha256")};
-            if (kind == "descriptor" && attribute.descriptor.values.size() > 1)
+            attribute.value = Descriptor{numbers("value"), kind == "list", cell("file"), cell("unit"), is_stale, cell("sha256")};
+            if (kind == "descriptor" && attribute.descriptor()->values.size() > 1)
                 fail("value", "more than one number", "write 'list' as the kind");
         } else {
             fail("kind", fmt::format("'{}' is not a known kind", one_line(kind).substr(0, 40)),
@@ -186,8 +182,9 @@ private:
         return attribute;
     }
 
-    [[nodiscard]] Measure measure() const {
+    [[nodiscard]] Measure measure(bool is_stale) const {
         Measure measure;
+        measure.stale = is_stale;
         measure.tool = cell("tool");
         for (const double value : numbers("points")) measure.points.push_back(index("points", value));
         const auto direction = numbers("direction");
@@ -234,24 +231,16 @@ std::string attribute_table(const AnnotationSet& set) {
         if (annotation.attributes.empty()) add({});
         for (const Attribute& attribute : annotation.attributes) {
             const std::string id = to_string(attribute.id);
-            const Measure& m = attribute.measure;
-            const Descriptor& d = attribute.descriptor;
-            switch (attribute.type) {
-                case AttributeType::semantic:
-                    add({id, attribute.name, "semantic", "", "", attribute.note, "", "", "", "", "", "", "", "", "",
-                         attribute.origin});
-                    break;
-                case AttributeType::measure:
-                    add({id, attribute.name, "measure", m.value ? digits(*m.value) : "", m.unit, "", m.tool,
-                         joined_numbers(m.points), m.direction ? joined_numbers(*m.direction) : "", cell_text(m.locations), "",
-                         m.stale ? "true" : "", m.exact ? "exact" : "", cell_text(m.repeats),
-                         m.uncertainty ? digits(*m.uncertainty) : ""});
-                    break;
-                case AttributeType::descriptor:
-                    add({id, attribute.name, d.is_list ? "list" : "descriptor", joined_numbers(d.values), d.unit, "", "", "", "",
-                         "", d.file, d.stale ? "true" : "", "", "", "", "", d.sha256});
-                    break;
-            }
+            if (const Note* note = attribute.note())
+                add({id, attribute.name, "semantic", "", "", note->text, "", "", "", "", "", "", "", "", "", note->origin});
+            else if (const Measure* m = attribute.measure())
+                add({id, attribute.name, "measure", m->value ? digits(*m->value) : "", m->unit, "", m->tool,
+                     joined_numbers(m->points), m->direction ? joined_numbers(*m->direction) : "", cell_text(m->locations), "",
+                     m->stale ? "true" : "", m->exact ? "exact" : "", cell_text(m->repeats),
+                     m->uncertainty ? digits(*m->uncertainty) : ""});
+            else if (const Descriptor* d = attribute.descriptor())
+                add({id, attribute.name, d->is_list ? "list" : "descriptor", joined_numbers(d->values), d->unit, "", "", "", "",
+                     "", d->file, d->stale ? "true" : "", "", "", "", "", d->sha256});
         }
     }
     return text;

@@ -166,13 +166,12 @@ private:
     }
 
     static void put(Annotation& annotation, const std::string& name, const std::string& text) {
-        const auto same_name = std::find_if(annotation.attributes.begin(), annotation.attributes.end(), [&](const Attribute& a) {
-            return a.name == name && a.type == AttributeType::semantic;
-        });
+        const auto same_name = std::find_if(annotation.attributes.begin(), annotation.attributes.end(),
+                                            [&](const Attribute& a) { return a.name == name && a.note() != nullptr; });
         Attribute attribute;
         attribute.id = same_name == annotation.attributes.end() ? free_attribute_id(annotation) : same_name->id;
         attribute.name = name;
-        attribute.note = text;
+        attribute.value = Note{text, {}};
         put(annotation, attribute);
     }
 
@@ -201,16 +200,16 @@ private:
             join_elements(annotation, other);
         }
         for (Attribute attribute : other.attributes) {
-            const auto counterpart =
-                std::find_if(annotation.attributes.begin(), annotation.attributes.end(),
-                             [&](const Attribute& a) { return a.name == attribute.name && a.type == attribute.type; });
+            const auto counterpart = std::find_if(
+                annotation.attributes.begin(), annotation.attributes.end(),
+                [&](const Attribute& a) { return a.name == attribute.name && a.value.index() == attribute.value.index(); });
             if (counterpart == annotation.attributes.end()) {
                 attribute.id = free_attribute_id(annotation);
                 annotation.attributes.push_back(std::move(attribute));
                 continue;
             }
             attribute.id = counterpart->id;
-            if (!same(attribute, *counterpart) && attribute.type != AttributeType::descriptor)
+            if (!same(attribute, *counterpart) && attribute.descriptor() == nullptr)
                 notes_.push_back(fmt::format("annotation {} keeps its own '{}'; that of annotation {} is dropped", annotation.id,
                                              interchange::as_text(attribute.name), other.id));
         }
@@ -279,15 +278,14 @@ private:
                 fmt::format("annotation {} '{}' already consists of one piece", original.id, interchange::as_text(original.tag)));
             return;
         }
-        for (Annotation& part : parts)
-            std::erase_if(part.attributes, [](const Attribute& a) { return a.type == AttributeType::measure; });
+        for (Annotation& part : parts) std::erase_if(part.attributes, [](const Attribute& a) { return a.measure() != nullptr; });
         std::vector<std::vector<Index>> touched;
         for (const Annotation& part : parts) touched.push_back(touched_vertices(mesh_, part));
         for (const Attribute& attribute : original.attributes) {
-            if (attribute.type != AttributeType::measure) continue;
+            if (attribute.measure() == nullptr) continue;
             std::size_t owner = 0;
             for (std::size_t i = parts.size(); i-- > 0;)
-                for (const Index pin : attribute.measure.points)
+                for (const Index pin : attribute.measure()->points)
                     if (std::binary_search(touched[i].begin(), touched[i].end(), pin)) owner = i;
             parts[owner].attributes.push_back(attribute);
         }
@@ -351,10 +349,9 @@ void change_length_unit(const Mesh& mesh, AnnotationSet& set, const std::string&
     set.unit = new_unit;
     for (Annotation& annotation : set.annotations)
         for (Attribute& attribute : annotation.attributes) {
-            if (attribute.type == AttributeType::measure)
-                attribute.measure.unit = unit_after(attribute.measure.unit, old_unit, new_unit);
-            if (attribute.type != AttributeType::descriptor) continue;
-            std::string& unit = attribute.descriptor.unit;
+            if (Measure* measure = attribute.measure()) measure->unit = unit_after(measure->unit, old_unit, new_unit);
+            if (attribute.descriptor() == nullptr) continue;
+            std::string& unit = attribute.descriptor()->unit;
             const bool computed = (old_unit.empty() ? unit.empty() : unit == descriptor_unit(attribute.name, old_unit)) &&
                                   evaluate(mesh, annotation, attribute.name);
             unit = computed           ? descriptor_unit(attribute.name, new_unit)

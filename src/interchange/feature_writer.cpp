@@ -409,10 +409,10 @@ private:
         std::map<std::string, std::vector<std::string>> texts;
         for (Index i = 0; i < none(); ++i)
             for (const Attribute& attribute : object_.annotations.annotations[i].attributes) {
-                if (attribute.type == AttributeType::semantic) {
+                if (const Note* note = attribute.note()) {
                     auto& values = texts[attribute.name];
                     values.resize(none());
-                    values[i] += (values[i].empty() ? "" : "; ") + attribute.note;
+                    values[i] += (values[i].empty() ? "" : "; ") + note->text;
                     continue;
                 }
                 const Figures figures = attribute_values(attribute);

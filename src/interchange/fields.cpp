@@ -6,11 +6,7 @@
 
 namespace ostraka::interchange {
 
-bool same(const Attribute& a, const Attribute& b) {
-    if (a.id != b.id || a.name != b.name || a.type != b.type) return false;
-    if (a.type == AttributeType::semantic) return a.note == b.note && a.origin == b.origin;
-    return a.type == AttributeType::measure ? a.measure == b.measure : a.descriptor == b.descriptor;
-}
+bool same(const Attribute& a, const Attribute& b) { return a.id == b.id && a.name == b.name && a.value == b.value; }
 
 bool same_geometry(const Annotation& a, const Annotation& b) {
     return a.type == b.type && a.points == b.points && a.polylines == b.polylines && a.all == b.all && a.faces == b.faces &&
@@ -35,26 +31,23 @@ std::string as_text(const std::optional<std::array<double, 3>>& direction) {
 std::string as_text(const std::vector<int>& ids) { return joined_numbers(ids); }
 
 std::string as_text(const Attribute& attribute) {
-    if (attribute.type == AttributeType::semantic)
-        return as_text(fmt::format("{}: {}{}", attribute.name, attribute.note,
-                                   attribute.origin.empty() ? "" : " (inferred: " + attribute.origin + ")"));
-    const bool measured = attribute.type == AttributeType::measure;
+    if (const Note* note = attribute.note())
+        return as_text(
+            fmt::format("{}: {}{}", attribute.name, note->text, note->origin.empty() ? "" : " (inferred: " + note->origin + ")"));
+    const Measure* measure = attribute.measure();
+    const Descriptor* descriptor = attribute.descriptor();
     std::string text = attribute.name + ":";
-    if (measured) {
-        text += fmt::format(" {}{}", attribute.measure.tool, attribute.measure.exact ? " (exact)" : "");
-        if (attribute.measure.value) text += " " + digits(*attribute.measure.value);
-        if (attribute.measure.uncertainty) text += " +- " + digits(*attribute.measure.uncertainty);
-    }
+    if (measure != nullptr) text += fmt::format(" {}{}", measure->tool, measure->exact ? " (exact)" : "");
     const auto [values, unit, stale] = attribute_values(attribute);
-    for (std::size_t i = 0; !measured && i < values.size() && i < 4; ++i) text += " " + digits(values[i]);
-    if (!measured && !attribute.descriptor.file.empty()) text += " in " + attribute.descriptor.file;
+    for (std::size_t i = 0; i < values.size() && i < 4; ++i) text += " " + digits(values[i]);
+    if (measure != nullptr && measure->uncertainty) text += " +- " + digits(*measure->uncertainty);
+    if (descriptor != nullptr && !descriptor->file.empty()) text += " in " + descriptor->file;
     if (!unit.empty()) text += " " + unit;
-    if (measured) {
+    if (measure != nullptr) {
         text += " (pins";
-        for (std::size_t i = 0; i < attribute.measure.points.size() && i < 4; ++i)
-            text += " " + std::to_string(attribute.measure.points[i]);
-        text += attribute.measure.points.size() > 4 ? " ..." : "";
-        if (!attribute.measure.repeats.empty()) text += fmt::format(", picked {} times", attribute.measure.repeats.size() + 1);
+        for (std::size_t i = 0; i < measure->points.size() && i < 4; ++i) text += " " + std::to_string(measure->points[i]);
+        text += measure->points.size() > 4 ? " ..." : "";
+        if (!measure->repeats.empty()) text += fmt::format(", picked {} times", measure->repeats.size() + 1);
         text += ")";
     }
     return as_text(text + (stale ? " (stale)" : ""));

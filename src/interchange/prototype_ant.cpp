@@ -59,20 +59,20 @@ std::string prototype_annotations(AnnotatedMeshView object, std::vector<std::str
         JsonValue attributes(rapidjson::kArrayType);
         for (const Attribute& attribute : annotation.attributes) {
             JsonValue flat = json_object(a, "id", attribute.id, "name", attribute.name);
-            if (attribute.type == AttributeType::measure) {
-                const Measure& measure = attribute.measure;
-                double value = measure.value.value_or(0);
+            if (const Measure* measure = attribute.measure()) {
+                double value = measure->value.value_or(0);
                 try {
-                    if (!measure.value) value = evaluate(object.mesh, annotation, measure);
+                    if (!measure->value) value = evaluate(object.mesh, annotation, *measure);
                 } catch (const Error&) {
                     ++unevaluated;
                 }
-                add_members(flat, a, "type", "Geometric", "value", value, "points", measure.points, "tool", measure.tool);
-                add_nonempty_members(flat, a, "direction", measure.direction);
+                add_members(flat, a, "type", "Geometric", "value", value, "points", measure->points, "tool", measure->tool);
+                add_nonempty_members(flat, a, "direction", measure->direction);
             } else {
-                const bool semantic = attribute.type == AttributeType::semantic;
-                descriptors += semantic ? 0 : 1;
-                add_members(flat, a, "type", "Semantic", "value", semantic ? attribute.note : value_text(attribute.descriptor));
+                const Note* note = attribute.note();
+                descriptors += note != nullptr ? 0 : 1;
+                add_members(flat, a, "type", "Semantic", "value",
+                            note != nullptr ? note->text : value_text(*attribute.descriptor()));
             }
             attributes.PushBack(flat, a);
         }

@@ -23,9 +23,9 @@ bool is_facet_type(const std::string& text) { return text == "external" || text 
 
 std::string facet_type(const Annotation& annotation) {
     for (const Attribute& attribute : annotation.attributes)
-        if (attribute.type == AttributeType::semantic && (attribute.name == "facet" || attribute.name == "type") &&
-            is_facet_type(attribute.note))
-            return attribute.note;
+        if (const Note* note = attribute.note();
+            note != nullptr && (attribute.name == "facet" || attribute.name == "type") && is_facet_type(note->text))
+            return note->text;
     return "external";
 }
 
@@ -85,11 +85,9 @@ private:
         annotation.id = id;
         annotation.colour = distinct_colour(static_cast<std::size_t>(id));
         annotation.tag = as_utf8(field("Facet ID:"));
-        Attribute type;
-        type.name = "facet";
-        type.note = field("Type:");
-        if (!is_facet_type(type.note)) fail("unknown type", "use external, internal or fracture");
-        annotation.attributes.push_back(type);
+        const std::string type(field("Type:"));
+        if (!is_facet_type(type)) fail("unknown type", "use external, internal or fracture");
+        annotation.attributes.push_back({0, "facet", Note{type, {}}});
         (void)field("Border:");
         std::vector<Outline> borders;
         bool has_vertices = false;

@@ -79,7 +79,7 @@ private:
     }
 
     static std::string description_of(const Attribute& attribute) {
-        if (attribute.type == AttributeType::semantic) return fmt::format("{}: {}", attribute.name, attribute.note);
+        if (const Note* note = attribute.note()) return fmt::format("{}: {}", attribute.name, note->text);
         const auto [values, unit, stale] = attribute_values(attribute);
         std::string text = attribute.name + ":";
         for (std::size_t i = 0; i < values.size() && i < 8; ++i) text += " " + digits(values[i]);
@@ -164,8 +164,8 @@ private:
         else add_members(result, a(), "parts", parts(annotation));
         JsonValue pins(rapidjson::kObjectType), repeats(rapidjson::kObjectType);
         for (const Attribute& attribute : annotation.attributes) {
-            if (attribute.type != AttributeType::measure) continue;
-            const Measure& measure = attribute.measure;
+            if (attribute.measure() == nullptr) continue;
+            const Measure& measure = *attribute.measure();
             const auto pin = [&](const SurfacePoint& location) { return place(position(object_.mesh, location)); };
             add_members(pins, a(), std::to_string(attribute.id),
                         measure.locations.empty() ? vertex_list(measure.points) : json_list(measure.locations, a(), pin));

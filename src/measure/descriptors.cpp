@@ -252,21 +252,19 @@ std::vector<Quantity> DescriptorSearch::describe(const Annotation& annotation, c
 
 void store(Annotation& annotation, const std::vector<Quantity>& quantities, const std::string& unit) {
     for (const Quantity& quantity : quantities) {
-        auto attribute = std::find_if(annotation.attributes.begin(), annotation.attributes.end(), [&](const Attribute& a) {
-            return a.type == AttributeType::descriptor && a.name == quantity.name;
-        });
+        auto attribute = std::find_if(annotation.attributes.begin(), annotation.attributes.end(),
+                                      [&](const Attribute& a) { return a.descriptor() != nullptr && a.name == quantity.name; });
         if (attribute == annotation.attributes.end()) {
             const int id = next_free_id(annotation.attributes);
             annotation.attributes.emplace_back();
             attribute = annotation.attributes.end() - 1;
             attribute->id = id;
             attribute->name = quantity.name;
-            attribute->type = AttributeType::descriptor;
         }
-        attribute->descriptor = {};
-        attribute->descriptor.values = quantity.values;
-        attribute->descriptor.is_list = quantity.is_list;
-        attribute->descriptor.unit = unit_of(quantity, unit);
+        auto& descriptor = attribute->value.emplace<Descriptor>();
+        descriptor.values = quantity.values;
+        descriptor.is_list = quantity.is_list;
+        descriptor.unit = unit_of(quantity, unit);
     }
 }
 

@@ -51,28 +51,10 @@ public:
             const Attribute& recomputed = measured.attributes[i];
             const std::string attribute_pointer = pointer + "/attributes/" + to_string(i),
                               name = fmt::format("the attribute '{}'", attribute.name);
-            if (attribute.type == AttributeType::measure) {
-                if (attribute.measure.stale) defect(attribute_pointer, name + " is marked stale");
-                else if (recomputed.measure.stale)
-                    defect(attribute_pointer, name + " cannot be measured: its pins are not connected");
-                else if (attribute.measure.value)
-                    compare(*attribute.measure.value, *recomputed.measure.value, attribute_pointer, name);
-                else
-                    remark(attribute_pointer,
-                           fmt::format("{} has no value; it measures {}", name, digits(*recomputed.measure.value, 9)));
-                if (recomputed.measure.direction && recomputed.measure.repeats.empty() && !recomputed.measure.stale &&
-                    !is_extent(mesh_, annotation, recomputed.measure))
-                    remark(attribute_pointer,
-                           name +
-                               " is not the extent of its annotation along its direction: if it is meant to be, "
-                               "measure it again");
-            } else if (attribute.type == AttributeType::descriptor) {
-                if (attribute.descriptor.stale) defect(attribute_pointer, name + " is marked stale");
-                else if (attribute.descriptor.values.empty() && attribute.descriptor.file.empty())
-                    defect(attribute_pointer, name + " has neither value nor file");
-                else if (attribute.descriptor.values.size() == 1 && recomputed.descriptor.values.size() == 1)
-                    compare(attribute.descriptor.values.front(), recomputed.descriptor.values.front(), attribute_pointer, name);
-            }
+            if (attribute.measure() != nullptr)
+                measure(annotation, *attribute.measure(), *recomputed.measure(), attribute_pointer, name);
+            else if (attribute.descriptor() != nullptr)
+                descriptor(*attribute.descriptor(), *recomputed.descriptor(), attribute_pointer, name);
         }
     }
 
@@ -80,6 +62,24 @@ public:
     void remark(const std::string& where, const std::string& text) { findings.push_back({false, where, text}); }
 
 private:
+    void measure(const Annotation& annotation, const Measure& stored, const Measure& recomputed, const std::string& pointer,
+                 const std::string& name) {
+        if (stored.stale) defect(pointer, name + " is marked stale");
+        else if (recomputed.stale) defect(pointer, name + " cannot be measured: its pins are not connected");
+        else if (stored.value) compare(*stored.value, *recomputed.value, pointer, name);
+        else remark(pointer, fmt::format("{} has no value; it measures {}", name, digits(*recomputed.value, 9)));
+        if (recomputed.direction && recomputed.repeats.empty() && !recomputed.stale && !is_extent(mesh_, annotation, recomputed))
+            remark(pointer,
+                   name + " is not the extent of its annotation along its direction: if it is meant to be, measure it again");
+    }
+
+    void descriptor(const Descriptor& stored, const Descriptor& recomputed, const std::string& pointer, const std::string& name) {
+        if (stored.stale) defect(pointer, name + " is marked stale");
+        else if (stored.values.empty() && stored.file.empty()) defect(pointer, name + " has neither value nor file");
+        else if (stored.values.size() == 1 && recomputed.values.size() == 1)
+            compare(stored.values.front(), recomputed.values.front(), pointer, name);
+    }
+
     void compare(double stored, double computed, const std::string& where, const std::string& name) {
         if (std::abs(stored - computed) <= 1e-6 * std::max(std::abs(stored), std::abs(computed))) return;
         defect(where, fmt::format("{} is {} but measures {}", name, digits(stored, 9), digits(computed, 9)));

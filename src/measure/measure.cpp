@@ -220,26 +220,34 @@ Evaluated evaluate_with_uncertainty(const Mesh& mesh, const Annotation& annotati
     return Evaluator(mesh).evaluate(annotation, measure);
 }
 
+namespace {
+
+/// True if both are pickings of the same measure: only their pins at vertices, repeats and values may differ.
+bool is_same_measure(const Measure& a, const Measure& b) {
+    return a.tool == b.tool && a.points.size() == b.points.size() && a.direction == b.direction && a.exact == b.exact &&
+           a.unit == b.unit && a.locations.empty() && b.locations.empty();
+}
+
+}  // namespace
+
 std::size_t merge_pickings(Annotation& annotation) {
     std::vector<Attribute> merged_attributes;
     std::size_t merged = 0;
     for (Attribute& attribute : annotation.attributes) {
-        const Measure& measure = attribute.measure;
+        const Measure* measure = attribute.measure();
         const auto matching = std::find_if(merged_attributes.begin(), merged_attributes.end(), [&](const Attribute& other) {
-            return attribute.type == AttributeType::measure && other.type == AttributeType::measure &&
-                   other.name == attribute.name && other.measure.tool == measure.tool &&
-                   other.measure.points.size() == measure.points.size() && other.measure.direction == measure.direction &&
-                   other.measure.exact == measure.exact && other.measure.unit == measure.unit &&
-                   other.measure.locations.empty() && measure.locations.empty();
+            return measure != nullptr && other.measure() != nullptr && other.name == attribute.name &&
+                   is_same_measure(*measure, *other.measure());
         });
         if (matching == merged_attributes.end()) {
             merged_attributes.push_back(std::move(attribute));
             continue;
         }
-        matching->measure.repeats.push_back(measure.points);
-        matching->measure.repeats.insert(matching->measure.repeats.end(), measure.repeats.begin(), measure.repeats.end());
-        matching->measure.stale = true;
-        matching->measure.uncertainty.reset();
+        Measure& merged_measure = *matching->measure();
+        merged_measure.repeats.push_back(measure->points);
+        merged_measure.repeats.insert(merged_measure.repeats.end(), measure->repeats.begin(), measure->repeats.end());
+        merged_measure.stale = true;
+        merged_measure.uncertainty.reset();
         ++merged;
     }
     annotation.attributes = std::move(merged_attributes);
@@ -294,13 +302,13 @@ void move_extents(AnnotatedMeshView before, const Mesh& after, AnnotationSet& to
         if (source == nullptr || touched_vertices(after, annotation).empty()) continue;
         for (Attribute& attribute : annotation.attributes) {
             const auto is_same_attribute = [&](const Attribute& candidate) {
-                return candidate.id == attribute.id && candidate.type == AttributeType::measure;
+                return candidate.id == attribute.id && candidate.measure() != nullptr;
             };
             const auto original = std::find_if(source->attributes.begin(), source->attributes.end(), is_same_attribute);
-            if (attribute.type != AttributeType::measure || original == source->attributes.end() ||
-                !is_extent(before.mesh, *source, original->measure))
+            if (attribute.measure() == nullptr || original == source->attributes.end() ||
+                !is_extent(before.mesh, *source, *original->measure()))
                 continue;
-            Measure& measure = attribute.measure;
+            Measure& measure = *attribute.measure();
             const auto pins = extremes(after, annotation, *measure.direction);
             measure.points.assign(pins.begin(), pins.end());
             measure.locations.clear();
@@ -333,8 +341,7 @@ std::vector<Point> path_of_measure(PathSearch& search, const Mesh& mesh, const M
 }
 
 Attribute& add_measure(Annotation& annotation, const std::string& name, Measure measure) {
-    annotation.attributes.push_back(
-        {next_free_id(annotation.attributes), name, AttributeType::measure, {}, std::move(measure), {}});
+    annotation.attributes.push_back({next_free_id(annotation.attributes), name, std::move(measure)});
     return annotation.attributes.back();
 }
 
@@ -351,9 +358,9 @@ RefreshResult refresh_measures(const Mesh& mesh, AnnotationSet& set, bool uncert
     };
     for (Annotation& annotation : set.annotations)
         for (Attribute& attribute : annotation.attributes) {
-            if (attribute.type == AttributeType::measure) {
+            if (attribute.measure() != nullptr) {
                 try {
-                    Measure& measure = attribute.measure;
+                    Measure& measure = *attribute.measure();
                     const Evaluated evaluated = evaluator.evaluate(annotation, measure);
                     measure.value = evaluated.value;
                     if (uncertainties || measure.uncertainty || !measure.repeats.empty())
@@ -362,10 +369,10 @@ RefreshResult refresh_measures(const Mesh& mesh, AnnotationSet& set, bool uncert
                     ++result.computed;
                 } catch (const Error& error) {
                     if (error.kind() == ErrorKind::cancelled) throw;
-                    stays_stale(attribute.measure.stale, annotation, attribute, error.problem());
+                    stays_stale(attribute.measure()->stale, annotation, attribute, error.problem());
                 }
-            } else if (attribute.type == AttributeType::descriptor) {
-                Descriptor& descriptor = attribute.descriptor;
+            } else if (attribute.descriptor() != nullptr) {
+                Descriptor& descriptor = *attribute.descriptor();
                 const auto quantity = descriptor.file.empty() ? descriptors.find(annotation, attribute.name) : std::nullopt;
                 if (quantity && quantity->is_list == descriptor.is_list) {
                     descriptor.values = quantity->values;

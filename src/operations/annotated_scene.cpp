@@ -88,8 +88,8 @@ public:
     void draw_measures(PathSearch& search, const Mesh& mesh, const Annotation& annotation, const std::string& unit) {
         constexpr Rgb ink{30, 30, 34}, white{255, 255, 255};
         for (const Attribute& attribute : annotation.attributes) {
-            if (attribute.type != AttributeType::measure) continue;
-            const Measure& measure = attribute.measure;
+            if (attribute.measure() == nullptr) continue;
+            const Measure& measure = *attribute.measure();
             std::vector<Point> line = path_of_measure(search, mesh, measure);
             if (line.empty()) line = pins_of(mesh, measure);
             if (line.empty()) continue;

@@ -43,25 +43,24 @@ void FileAttribute::write(AnnotationSet set, int holder, const Slot& file, const
     const std::string attribute_name = name_.empty() ? value.name : name_;
     auto& attributes = annotation.attributes;
     auto place = std::find_if(attributes.begin(), attributes.end(), [&](const Attribute& attribute) {
-        return attribute.name == attribute_name && attribute.type == AttributeType::descriptor;
+        return attribute.name == attribute_name && attribute.descriptor() != nullptr;
     });
     if (place == attributes.end()) {
         Attribute attribute;
         attribute.id = next_free_id(attributes);
         attribute.name = attribute_name;
-        attribute.type = AttributeType::descriptor;
         place = attributes.insert(attributes.end(), std::move(attribute));
     }
-    place->descriptor = {};
-    place->descriptor.unit = value.unit;
-    place->descriptor.sha256 = value.sha256;
+    auto& descriptor = place->value.emplace<Descriptor>();
+    descriptor.unit = value.unit;
+    descriptor.sha256 = value.sha256;
     const Source& source = file.sources.front();
-    place->descriptor.file = source.file.empty() || output_.sources.front().file.empty()
-                                 ? Path(file.file()).filename().string()
-                                 : resolved(source.file).lexically_relative(folder_of(output_.file())).string();
+    descriptor.file = source.file.empty() || output_.sources.front().file.empty()
+                          ? Path(file.file()).filename().string()
+                          : resolved(source.file).lexically_relative(folder_of(output_.file())).string();
     report("annotation", annotation.id)("attribute", attribute_name);
     report.line(fmt::format("{} has the attribute '{}' in '{}'", name_of(annotation), printable(attribute_name, 60),
-                            printable(place->descriptor.file, 60)));
+                            printable(descriptor.file, 60)));
     output_.write(std::move(set), mesh->mesh, mesh.file());
 }
 

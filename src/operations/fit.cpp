@@ -43,7 +43,7 @@ struct Fit final : Operation {
         vocabulary.declare(p, as_template_words);
         options.declare_options(p.options);
         reading.declare_options(p.options);
-        for (const char* name : {"residual", "scale-tolerance", "slack"}) thresholds[name] = p.options.find(name);
+        for (const char* name : {"residual", "scale-tolerance", "min-tolerance"}) thresholds[name] = p.options.find(name);
         p.report.schema = "assembly";
         p.report.text_table("fragments", {"fragment", "place", "landmarks", "residual", "own scale", "wrong landmarks"});
         p.report.text_table("joints", {"breaks", "turn, degrees", "contact %", "rim %", "residual", "confidence", "turn"});
@@ -268,7 +268,7 @@ struct Fit final : Operation {
         });
         report.row("constraints", {constraint.id, constraint.type,
                                    !constraint.used                                    ? "left out"
-                                   : constraint.verdict == Verdict::fails && !objected ? "holds within --slack"
+                                   : constraint.verdict == Verdict::fails && !objected ? "holds within --min-tolerance"
                                                                                        : to_string(constraint.verdict),
                                    joined(words, "; ")});
     }

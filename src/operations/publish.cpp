@@ -140,9 +140,9 @@ struct Publish final : AnnotatedMeshOperation {
             std::string text = annotation.tag.empty() ? "annotation " + std::to_string(annotation.id) : annotation.tag;
             if (!annotation.note.empty()) text += ": " + annotation.note;
             for (const Attribute& attribute : annotation.attributes)
-                if (attribute.type == AttributeType::measure && attribute.measure.value)
-                    text += fmt::format("; {} {}{}", attribute.name, digits(*attribute.measure.value, 5),
-                                        attribute.measure.unit.empty() ? "" : " " + attribute.measure.unit);
+                if (const Measure* measure = attribute.measure(); measure != nullptr && measure->value)
+                    text += fmt::format("; {} {}{}", attribute.name, digits(*measure->value, 5),
+                                        measure->unit.empty() ? "" : " " + measure->unit);
             JsonValue selector = json_object(a, "type", "PointSelector", "x", p.x(), "y", p.y(), "z", p.z());
             JsonValue target =
                 json_object(a, "id", url(fmt::format("annotation/{}/target", annotation.id)), "type", "SpecificResource",

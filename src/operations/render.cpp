@@ -67,8 +67,8 @@ struct Render final : Operation {
 
     void check() const override {
         if (!picture.file().empty()) static_cast<void>(picture_kind(picture.file()));
-        if (options.deep && !picture.file().empty() && picture_kind(picture.file()) != PictureKind::pixels)
-            fail_usage(fmt::format("--deep with '{}'", picture.file()), "16 bits per channel need a .png picture");
+        if (options.sixteen_bit && !picture.file().empty() && picture_kind(picture.file()) != PictureKind::pixels)
+            fail_usage(fmt::format("--sixteen-bit with '{}'", picture.file()), "16 bits per channel need a .png picture");
         if (turntable.size() > 0 && !options.views.empty())
             fail_usage("--turntable with --views", "give one view, with which the turn begins");
         for (const auto& [flag, count] : {std::pair{"annotations", annotations.size()}, std::pair{"map", maps.size()},

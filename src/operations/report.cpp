@@ -52,6 +52,19 @@ std::string address_of(const Path& path) {
     return joined(parts, "/");
 }
 
+/// Copies the value of the original attribute; a measure keeps its own pins.
+void keep_value(Attribute& attribute, const Attribute& original) {
+    Measure* measure = attribute.measure();
+    const Measure* original_measure = original.measure();
+    if (measure != nullptr && original_measure != nullptr) {
+        measure->value = original_measure->value;
+        measure->uncertainty = original_measure->uncertainty;
+        measure->stale = original_measure->stale;
+    } else if (attribute.descriptor() != nullptr && original.descriptor() != nullptr) {
+        attribute.value = original.value;
+    }
+}
+
 struct MakeReport final : Operation {
     void declare(Parameters& p) override {
         p.input("results", Kind::text, results,
@@ -384,9 +397,10 @@ struct MakeReport final : Operation {
         if (object.set)
             for (const Annotation& annotation : object.set->annotations)
                 for (const Attribute& attribute : annotation.attributes) {
-                    if (attribute.type != AttributeType::measure || !attribute.measure.value) continue;
+                    const Measure* measure = attribute.measure();
+                    if (measure == nullptr || !measure->value) continue;
                     std::string column = fmt::format("{}: {}", annotation.tag, attribute.name);
-                    if (!attribute.measure.unit.empty()) column += fmt::format(" ({})", attribute.measure.unit);
+                    if (!measure->unit.empty()) column += fmt::format(" ({})", measure->unit);
                     const auto column_place = std::find(overview.columns.begin(), overview.columns.end(), column);
                     const auto k = static_cast<std::size_t>(column_place - overview.columns.begin());
                     if (column_place == overview.columns.end()) {
@@ -394,7 +408,7 @@ struct MakeReport final : Operation {
                         overview.columns.push_back(column);
                     }
                     while (row.cells.size() <= k) row.cells.emplace_back();
-                    row.cells[k] = cell_of(*attribute.measure.value);
+                    row.cells[k] = cell_of(*measure->value);
                 }
         for (PageTable::Row& table_row : overview.rows)
             while (table_row.cells.size() < overview.columns.size()) table_row.cells.emplace_back();
@@ -470,12 +484,7 @@ struct MakeReport final : Operation {
                 if (const Annotation* original = object.set->find(annotation.id))
                     for (Attribute& attribute : annotation.attributes)
                         for (const Attribute& original_attribute : original->attributes)
-                            if (original_attribute.id == attribute.id && original_attribute.type == attribute.type) {
-                                attribute.measure.value = original_attribute.measure.value;
-                                attribute.measure.uncertainty = original_attribute.measure.uncertainty;
-                                attribute.measure.stale = original_attribute.measure.stale;
-                                attribute.descriptor = original_attribute.descriptor;
-                            }
+                            if (original_attribute.id == attribute.id) keep_value(attribute, original_attribute);
         return bound;
     }
 

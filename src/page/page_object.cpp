@@ -125,21 +125,21 @@ JsonValue annotations_json(AnnotatedMeshView object, const ContainmentOrder& ord
         const Annotation& annotation = object.annotations.annotations[i];
         JsonValue measures(rapidjson::kArrayType), attributes(rapidjson::kArrayType);
         for (const Attribute& attribute : annotation.attributes) {
-            if (attribute.type == AttributeType::measure) {
-                const Measure& measure = attribute.measure;
+            if (const Measure* measure = attribute.measure()) {
                 JsonValue entry = json_object(
-                    allocator, "name", attribute.name, "tool", measure.tool, "value", measure.value, "unit", measure.unit, "pins",
-                    json_list(pins_of(object.mesh, measure), allocator, [&](const Point& p) { return relative(triple(p)); }));
-                const auto measured_path = json_list(path_of_measure(paths, object.mesh, measure), allocator,
+                    allocator, "name", attribute.name, "tool", measure->tool, "value", measure->value, "unit", measure->unit,
+                    "pins",
+                    json_list(pins_of(object.mesh, *measure), allocator, [&](const Point& p) { return relative(triple(p)); }));
+                const auto measured_path = json_list(path_of_measure(paths, object.mesh, *measure), allocator,
                                                      [&](const Point& at) { return relative(triple(at)); });
                 add_nonempty_members(entry, allocator, "way", measured_path);
-                if (measure.uncertainty) add_members(entry, allocator, "uncertainty", *measure.uncertainty);
-                add_nonempty_members(entry, allocator, "stale", measure.stale);
+                if (measure->uncertainty) add_members(entry, allocator, "uncertainty", *measure->uncertainty);
+                add_nonempty_members(entry, allocator, "stale", measure->stale);
                 measures.PushBack(entry, allocator);
             } else {
-                const bool is_word = attribute.type == AttributeType::semantic;
+                const Note* note = attribute.note();
                 attributes.PushBack(json_object(allocator, "name", attribute.name, "text",
-                                                is_word ? attribute.note : values_text(attribute.descriptor)),
+                                                note != nullptr ? note->text : values_text(*attribute.descriptor())),
                                     allocator);
             }
         }

@@ -73,13 +73,18 @@ double agreement(const Annotation& a, const Annotation& b) {
     int count = 0;
     for (const Attribute& ours : a.attributes)
         for (const Attribute& theirs : b.attributes) {
-            if (ours.name != theirs.name || ours.type != theirs.type) continue;
-            if (ours.type == AttributeType::semantic) sum += ours.note == theirs.note ? 1 : 0;
-            else if (ours.type == AttributeType::measure && ours.measure.value && theirs.measure.value &&
-                     *ours.measure.value > 0 && *theirs.measure.value > 0)
-                sum +=
-                    std::min(*ours.measure.value, *theirs.measure.value) / std::max(*ours.measure.value, *theirs.measure.value);
-            else continue;
+            if (ours.name != theirs.name) continue;
+            const Note *our_note = ours.note(), *their_note = theirs.note();
+            const Measure *our_measure = ours.measure(), *their_measure = theirs.measure();
+            if (our_note != nullptr && their_note != nullptr) {
+                sum += our_note->text == their_note->text ? 1 : 0;
+            } else if (our_measure != nullptr && their_measure != nullptr) {
+                const double our_value = our_measure->value.value_or(0), their_value = their_measure->value.value_or(0);
+                if (!(our_value > 0 && their_value > 0)) continue;
+                sum += std::min(our_value, their_value) / std::max(our_value, their_value);
+            } else {
+                continue;
+            }
             ++count;
         }
     return count > 0 ? sum / count : 1;

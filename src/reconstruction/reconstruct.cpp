@@ -431,7 +431,7 @@ void ReconstructOptions::declare_options(OptionList& list) {
     list("scale-tolerance", scale_tolerance,
          "maximum difference, in per cent, between the template's scale from one fragment and from the other fragments",
          Range{0, 1000});
-    list("slack", slack,
+    list("min-tolerance", min_tolerance,
          "minimum tolerance of the measures and proportions that constraints fix, in per cent: smaller deviations may be noise",
          Range{0, 1000});
     list("residual", residual,

@@ -198,7 +198,7 @@ private:
         double strain = 0;
         for (const Deviation& d : constraint.deviations) {
             if (!d.value || !d.tolerance) continue;
-            const double allowed = d.unit == "%" ? std::max(options_.slack, *d.tolerance) : *d.tolerance;
+            const double allowed = d.unit == "%" ? std::max(options_.min_tolerance, *d.tolerance) : *d.tolerance;
             strain = std::max(strain, *d.value / std::max(allowed, 1e-12));
             if (*d.value > allowed)
                 violations += fmt::format("{}{} {}, at most {}{}", violations.empty() ? "" : "; ", d.quantity,

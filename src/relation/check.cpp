@@ -131,8 +131,8 @@ void RelationOptions::declare_options(OptionList& list) {
     list("angle", angle, "maximum angle between axes at which a relationship holds", Range{0, 90}, "degrees");
     list("tilt", tilt, "maximum tilt of a contact's outline from horizontal (support) or vertical (side contact)", Range{0, 90},
          "degrees");
-    list("ratio", ratio, "maximum difference of area, shape or attribute at which a relationship holds", Range{0, 100},
-         "per cent");
+    list("max-difference", max_difference, "maximum difference of area, shape or attribute at which a relationship holds",
+         Range{0, 100}, "per cent");
 }
 
 }  // namespace ostraka

@@ -100,7 +100,7 @@ public:
                 if (state_.part(annotation.id).area() > 0) regions_.push_back(annotation.id);
             }
             for (const auto& attribute : annotation.attributes) {
-                if (attribute.type == AttributeType::semantic) continue;
+                if (attribute.note() != nullptr) continue;
                 auto& list = with_attribute_[attribute.name];
                 if (list.empty() || list.back() != &annotation) list.push_back(&annotation);
             }
@@ -165,7 +165,7 @@ private:
         std::size_t all = 0;
         for_pairs_apart([&](std::size_t i, std::size_t j) {
             const double difference = std::abs(areas[i] - areas[j]), larger = std::max(areas[i], areas[j]);
-            if (!(difference <= 2 * state_.options.ratio / 100 * larger)) return;
+            if (!(difference <= 2 * state_.options.max_difference / 100 * larger)) return;
             ++all;
             alike.emplace(difference / larger, i, j);
             if (alike.size() > most) alike.pop();
@@ -278,7 +278,7 @@ private:
             for (const Annotation* annotation : annotations)
                 if (const auto value = state_.attribute(*annotation, name); value && *value > 0)
                     values.emplace_back(std::log(*value), annotation->id);
-            for (auto& group : clusters(std::move(values), -std::log1p(-std::min(0.999, state_.options.ratio / 100))))
+            for (auto& group : clusters(std::move(values), -std::log1p(-std::min(0.999, state_.options.max_difference / 100))))
                 consider(GeometricRelation::equal_attributes, std::move(group), name);
         }
     }

@@ -272,18 +272,17 @@ const Cloud* RelationMeter::State::contact(int a, int b) {
 std::optional<double> RelationMeter::State::attribute(const Annotation& annotation, const std::string& name) const {
     for (const auto& attribute : annotation.attributes) {
         if (attribute.name != name) continue;
-        if (attribute.type == AttributeType::measure) {
+        if (const Measure* measure = attribute.measure()) {
             try {
-                return evaluate(mesh, annotation, attribute.measure);
+                return evaluate(mesh, annotation, *measure);
             } catch (const Error& error) {
                 if (error.kind() == ErrorKind::cancelled) throw;
                 return {};  // for example pins without a path between them
             }
         }
-        if (attribute.type == AttributeType::descriptor) {
+        if (const Descriptor* descriptor = attribute.descriptor()) {
             if (const auto value = evaluate(mesh, annotation, name)) return value;
-            if (attribute.descriptor.values.size() == 1 && !attribute.descriptor.stale)
-                return attribute.descriptor.values.front();
+            if (descriptor->values.size() == 1 && !descriptor->stale) return descriptor->values.front();
         }
     }
     return {};

@@ -34,7 +34,7 @@ public:
     void add_angle(double degrees) { add("angle", degrees, options_.angle, "degree"); }
     void add_tilt(double degrees) { add("tilt", degrees, options_.tilt, "degree"); }  ///< adds the tilt of a contact
     /// Adds a relative difference.
-    void add_ratio(const std::string& quantity, double per_cent) { add(quantity, per_cent, options_.ratio, "%"); }
+    void add_ratio(const std::string& quantity, double per_cent) { add(quantity, per_cent, options_.max_difference, "%"); }
     [[nodiscard]] bool holds() const { return holds_; }  ///< whether all quantities are within their tolerances
 
     const Relationship& stated;      ///< the relationship that is measured

@@ -35,9 +35,9 @@ QueryAmount query_amount(double value, const std::string& unit) {
 
 /// The value of an attribute as text that is equal for equal values.
 std::string value_text(const Attribute& attribute, const AllowedAttribute* allowed) {
-    if (attribute.type == AttributeType::semantic) {
-        const Term* term = allowed != nullptr ? term_of(*allowed, attribute.note) : nullptr;
-        return folded(term != nullptr ? term->name : attribute.note);
+    if (const Note* note = attribute.note()) {
+        const Term* term = allowed != nullptr ? term_of(*allowed, note->text) : nullptr;
+        return folded(term != nullptr ? term->name : note->text);
     }
     const Figures figures = attribute_values(attribute);
     std::string text;
@@ -253,10 +253,10 @@ private:
             attribute != nullptr && !attribute_values(*attribute).stale) {
             const Figures figures = attribute_values(*attribute);
             if (figures.values.size() == 1) known->second = query_amount(figures.values.front(), figures.unit);
-            if (attribute->type == AttributeType::semantic) {
+            if (const Note* note = attribute->note()) {
                 double value = 0;
-                const char* const end = attribute->note.data() + attribute->note.size();
-                if (const auto [to, code] = std::from_chars(attribute->note.data(), end, value); code == std::errc() && to == end)
+                const char* const end = note->text.data() + note->text.size();
+                if (const auto [to, code] = std::from_chars(note->text.data(), end, value); code == std::errc() && to == end)
                     known->second = QueryAmount{value};
             }
         } else if (const auto computed = descriptors_.find(annotation, name); computed && computed->values.size() == 1) {

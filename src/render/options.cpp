@@ -101,7 +101,7 @@ void RenderOptions::declare_options(OptionList& list) {
          "number of samples per pixel in each direction, which are averaged in PNG and kept in SVG and PDF; 0: 1 for PNG, 2 for "
          "SVG and PDF",
          Range{0, 4});
-    list("deep", deep, "write a PNG with 16 bits per channel");
+    list("sixteen-bit", sixteen_bit, "write a PNG with 16 bits per channel");
     list("dpi", dpi,
          "pixels of the picture per inch of paper, written into the file; 0: 300 with --scale, otherwise 96 in SVG and PDF, and "
          "not stated in PNG",

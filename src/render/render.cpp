@@ -395,7 +395,7 @@ private:
     PictureKind kind_;
     Size size_ = parse_size(options_.size);
     std::array<double, 3> up_ = parse_up(options_.up);
-    bool deep_ = options_.deep && kind_ == PictureKind::pixels;
+    bool deep_ = options_.sixteen_bit && kind_ == PictureKind::pixels;
     std::vector<Plan> plans_;
     std::vector<std::unique_ptr<Surface>> surfaces_;
     detail::Style style_ = style_of(options_, size_);

@@ -34,10 +34,10 @@ void annotate_revolution(RevolutionTemplate& result, const AxisFrame& frame, dou
     ensure_root(set, result.mesh);
     Attribute axis;
     axis.name = "axis";
-    axis.type = AttributeType::descriptor;
-    axis.descriptor.is_list = true;
+    auto& axis_line = axis.value.emplace<Descriptor>();
+    axis_line.is_list = true;
     for (const Vector3d& v : {Vector3d(frame.foot + lowest * frame.up), frame.up})
-        for (int k = 0; k < 3; ++k) axis.descriptor.values.push_back(v[k]);
+        for (int k = 0; k < 3; ++k) axis_line.values.push_back(v[k]);
     set.annotations.front().attributes.push_back(axis);
     const auto new_annotation = [&](const std::string& tag, const std::array<int, 3>& colour) {
         Annotation annotation;
@@ -62,14 +62,12 @@ void annotate_revolution(RevolutionTemplate& result, const AxisFrame& frame, dou
         auto& polyline = annotation.polylines.emplace_back();
         for (const Vertex v : rings[i]) polyline.push_back(Index(v));
         polyline.push_back(Index(rings[i].front()));
-        Attribute diameter;
-        diameter.name = "diameter";
-        diameter.type = AttributeType::measure;
-        diameter.measure.tool = "ruler";
-        diameter.measure.points = {Index(rings[i].front()), Index(rings[i][rings[i].size() / 2])};
-        diameter.measure.value =
+        Measure ruler;
+        ruler.tool = "ruler";
+        ruler.points = {Index(rings[i].front()), Index(rings[i][rings[i].size() / 2])};
+        ruler.value =
             (eigen(result.mesh.point(rings[i].front())) - eigen(result.mesh.point(rings[i][rings[i].size() / 2]))).norm();
-        annotation.attributes.push_back(std::move(diameter));
+        annotation.attributes.push_back({0, "diameter", std::move(ruler)});
         set.annotations.push_back(std::move(annotation));
     };
     ring(result.rim ? "rim" : "upper end", top, {40, 60, 120});

@@ -206,11 +206,11 @@ std::vector<SurfacePoint> thinned(const Mesh& mesh, const std::vector<SurfacePoi
 
 std::vector<ColourEdge> find_colour_edges(const Mesh& mesh, const MeshExtras& extras, const ColourEdgeOptions& options,
                                           const std::string& where) {
-    if (!(options.faint > 0) || !(options.texels >= 0 && options.texels <= 20) || !(options.shortest >= 0))
+    if (!(options.min_contrast > 0) || !(options.texels >= 0 && options.texels <= 20) || !(options.shortest >= 0))
         fail_usage("options of colour edges out of range", "give a contrast above 0 and a smoothing of 0 to 20 texels");
-    if (options.faint > options.contrast)
-        fail_usage("lines end at a larger contrast (--faint) than they must reach (--contrast)",
-                   "let --faint be at most --contrast");
+    if (options.min_contrast > options.contrast)
+        fail_usage("lines end at a larger contrast (--min-contrast) than they must reach (--contrast)",
+                   "let --min-contrast be at most --contrast");
     if (!has_colours(extras))
         fail_input(where, "the mesh has neither an image nor colours", "give the file with its image or colours");
     if (mesh.number_of_faces() == 0) return {};
@@ -223,7 +223,7 @@ std::vector<ColourEdge> find_colour_edges(const Mesh& mesh, const MeshExtras& ex
         std::sqrt(2 * std::acos(-1.0) * (rounds / 4.0 + 1.0 / 3));  // largest gradient of a step of one: 1 / width
     grid.blur(colours.lab, rounds);
     const NodeGradients tangent(grid);
-    const auto least = static_cast<float>(options.faint / width);
+    const auto least = static_cast<float>(options.min_contrast / width);
     const Gradients gradients = gradients_of(grid, tangent, colours.lab, least);
     const auto pieces = EdgeTracer(grid, tangent, gradients, least).pieces();
     std::vector<LineCrossing> crossings;

@@ -59,7 +59,7 @@ Response respond(const Mesh& mesh, const CreaseOptions& options) {
     const double radius = options.scale * box_diagonal(mesh);
     Response response;
     response.curvature = curvature(mesh, {options.scale}).mean;
-    const std::vector<double> wide = curvature(mesh, {std::min(1.0, options.scale * options.background_radius)}).mean;
+    const std::vector<double> wide = curvature(mesh, {std::min(1.0, options.scale * options.background_scale)}).mean;
     std::vector<double>& values = response.values;
     values.assign(wide.size(), 0);
     // Beside a border few faces of the ball are left, so that noise counts more than anywhere else.
@@ -286,7 +286,7 @@ std::vector<Crease> find_creases(const Mesh& mesh, const CreaseOptions& options)
                 *std::max_element(reached.begin(), reached.end(), [&](Vertex a, Vertex b) { return strength[a] < strength[b]; });
             std::vector<Index> patch(reached.begin(), reached.end());
             if (!(strength[top] > strong) ||
-                strength[top] < echo * rival(mesh, strength, top, options.background_radius * options.scale * diagonal))
+                strength[top] < echo * rival(mesh, strength, top, options.background_scale * options.scale * diagonal))
                 continue;
             std::sort(patch.begin(), patch.end());
             const Patch ground(mesh, strength, std::move(patch), place);
@@ -350,8 +350,8 @@ void CreaseOptions::declare_options(OptionList& list) {
          Choices{"ridge", "hollow", "both"});
     list("scale", scale, "radius over which curvature is averaged: about the crease width", Range{1e-6, 0.5},
          "share of the box diagonal");
-    list("wide", background_radius, "radius of the neighbourhood with which a place is compared, as a multiple of --scale",
-         Range{1.1, 20});
+    list("background-scale", background_scale,
+         "radius of the neighbourhood with which a place is compared, as a multiple of --scale", Range{1.1, 20});
     list("weak", lower_threshold,
          "lower hysteresis threshold of the crease response, in robust standard deviations over the surface", Range{0, 1000});
     list("strong", upper_threshold,

@@ -188,11 +188,10 @@ private:
                 fail(step.at + "/select", fmt::format("leaves nothing of annotation {}", id),
                      "select less, or use the action 'delete'");
             for (Attribute& attribute : annotation.attributes)
-                if (attribute.type == AttributeType::measure && attribute.measure.tool == "bounding" &&
-                    attribute.measure.direction) {
-                    const auto pins = extremes(mesh_, annotation, *attribute.measure.direction);
-                    attribute.measure.points.assign(pins.begin(), pins.end());
-                    attribute.measure.locations.clear();
+                if (attribute.measure() != nullptr && attribute.measure()->tool == "bounding" && attribute.measure()->direction) {
+                    const auto pins = extremes(mesh_, annotation, *attribute.measure()->direction);
+                    attribute.measure()->points.assign(pins.begin(), pins.end());
+                    attribute.measure()->locations.clear();
                 }
         }
         set_looks(annotation, step);
@@ -317,8 +316,9 @@ private:
     std::vector<Index> pins_of_measure(const StepAttribute& given, const Annotation& annotation) const {
         std::vector<Index> pins;
         for (const selection::Pick& pin : given.pins) pins.push_back(evaluator_.vertex(pin));
-        if (!given.pins.empty() || !given.attribute.measure.direction) return pins;
-        const auto outermost = extremes(mesh_, annotation, *given.attribute.measure.direction);
+        const Measure* measure = given.attribute.measure();
+        if (!given.pins.empty() || measure == nullptr || !measure->direction) return pins;
+        const auto outermost = extremes(mesh_, annotation, *measure->direction);
         return {outermost.begin(), outermost.end()};
     }
 
@@ -329,15 +329,14 @@ private:
         for (const StepAttribute& given : *step.attributes) {
             const std::vector<Index> pins = pins_of_measure(given, annotation);
             attributes.push_back(given.attribute);
-            if (given.attribute.type == AttributeType::measure) attributes.back().measure.points = pins;
+            if (Measure* measure = attributes.back().measure()) measure->points = pins;
         }
         annotation.attributes = std::move(attributes);
         for (Attribute& attribute : annotation.attributes) {
-            if (attribute.type == AttributeType::measure && attribute.measure.unit.empty()) attribute.measure.unit = set_.unit;
-            Descriptor& descriptor = attribute.descriptor;
-            if (attribute.type != AttributeType::descriptor || !descriptor.values.empty() || !descriptor.file.empty() ||
-                descriptor.is_list)
-                continue;
+            if (attribute.measure() != nullptr && attribute.measure()->unit.empty()) attribute.measure()->unit = set_.unit;
+            if (attribute.descriptor() == nullptr) continue;
+            Descriptor& descriptor = *attribute.descriptor();
+            if (!descriptor.values.empty() || !descriptor.file.empty() || descriptor.is_list) continue;
             if (!evaluate(mesh_, annotation, attribute.name))
                 fail(at,
                      "the descriptor '" + attribute.name + "' of a " + to_string(annotation.type) +

@@ -78,13 +78,13 @@ const Measure& ConstraintMembers::measure(const MeasureName& name, std::size_t i
     const std::string& attribute_name = relationship_.parameters.attribute;
     const Measure* match = nullptr;
     for (const Attribute& attribute : annotation.attributes) {
-        if (attribute.type != AttributeType::measure) continue;
+        if (attribute.measure() == nullptr) continue;
         if (!(name.measure ? is_named(attribute, *name.measure) : attribute_name.empty() || attribute.name == attribute_name))
             continue;
         if (match != nullptr)
             fail(fmt::format("annotation {} has several measures that {} may mean", annotation.id, name.parameter),
                  "give its id");
-        match = &attribute.measure;
+        match = attribute.measure();
     }
     if (match == nullptr)
         fail(fmt::format("annotation {} has no measure that {} names", annotation.id, name.parameter),

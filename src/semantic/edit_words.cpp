@@ -161,9 +161,8 @@ Kept kept_by(const std::string& text, const AnnotationSet& set) {
 }
 
 bool has_measure(const Annotation& part, const std::string& name) {
-    return std::any_of(part.attributes.begin(), part.attributes.end(), [&](const Attribute& attribute) {
-        return attribute.type == AttributeType::measure && attribute.name == name;
-    });
+    return std::any_of(part.attributes.begin(), part.attributes.end(),
+                       [&](const Attribute& attribute) { return attribute.measure() != nullptr && attribute.name == name; });
 }
 
 }  // namespace
@@ -210,7 +209,7 @@ void add_constraints(const EditWords& words, const AnnotationSet& set, RelationG
             if (!has_measure(*part, kept.measure)) {
                 std::vector<std::string> names;
                 for (const Attribute& attribute : part->attributes)
-                    if (attribute.type == AttributeType::measure) names.push_back(attribute.name);
+                    if (attribute.measure() != nullptr) names.push_back(attribute.name);
                 fail_input("annotations", "'" + part->tag + "' has no measure '" + printable(kept.measure, 60) + "'",
                            "take it with 'measure take'" + (names.empty() ? "" : ", or name one of: " + joined(names)));
             }

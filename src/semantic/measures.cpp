@@ -312,7 +312,7 @@ Statement same_measure(const MembersPtr& members, const spec::SameMeasure& spec,
             list.push_back(i == leader ? members->as_edited(i, edited) : parts[i]->to({size, size}, edited, now));
         return list;
     };
-    const Deviation tolerance{"difference from their mean", 0.0, tolerances.ratio, "%"};
+    const Deviation tolerance{"difference from their mean", 0.0, tolerances.max_difference, "%"};
     statement.measure = [=](const State& deformed) {
         Deviation worst = tolerance;
         const double size = mean(deformed);

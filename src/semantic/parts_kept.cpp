@@ -153,7 +153,7 @@ Statement same_length(const MembersPtr& members, const spec::Alike& spec, const 
                                        : members->make(kinds::PolylineLength{{length, length}, true}, ways[i]));
         return list;
     };
-    const Deviation tolerance{"difference from their mean", 0.0, tolerances.ratio, "%"};
+    const Deviation tolerance{"difference from their mean", 0.0, tolerances.max_difference, "%"};
     statement.measure = [=](const State& deformed) {
         Deviation worst = tolerance;
         const double size = mean(deformed.points);

@@ -72,6 +72,7 @@ LearntRange range_from(const JsonValue& object, std::size_t members, std::size_t
     range.quantity.kind = quantity_kind(object["kind"].GetString());
     if (const JsonValue* id = find_member(object, "id")) range.quantity.id = id->GetInt();
     range.quantity.name = object["name"].GetString();
+    if (range.quantity.name == "slack") range.quantity.name = "min-tolerance";  // classes learnt before version 0.2
     range.quantity.subject = text_in(object, "of");
     range.quantity.unit = text_in(object, "unit");
     range.quantity.one_sided = object["oneSided"].GetBool();

@@ -210,7 +210,7 @@ ClassAnswer compare_with(const ShapeClass& learnt, const LearntMember& object, c
     answer.score = score_of(learnt, object, answer.coordinates) + answer.parts;
     bool any_decides = false;
     for (const LearntRange& range : learnt.ranges) {
-        answer.checks.push_back(check_of(range, value_of(quantities, range.quantity.key()), options.attributes));
+        answer.checks.push_back(check_of(range, value_of(quantities, range.quantity.key()), options.check_attributes));
         QuantityCheck& check = answer.checks.back();
         check.worst = worst[range.quantity.key()];
         any_decides = any_decides || check.decides;
@@ -303,7 +303,8 @@ void ClassifyOptions::declare_options(OptionList& list) {
          Choices{"auto", "given", "fitted"});
     list("strict", strict, "decide whether the template fits an object by --max-off alone, without comparison with the members",
          Anything{});
-    list("attributes", attributes, "also reject objects with attribute values outside the ranges of the class", Anything{});
+    list("check-attributes", check_attributes, "also reject objects with attribute values outside the ranges of the class",
+         Anything{});
     list("close", tie_tolerance, "minimum relative difference of the scores of two classes that are distinguished", Range{0, 1});
 }
 

@@ -92,10 +92,10 @@ std::vector<ClassQuantity> fragment_quantities(const ClassTemplate& class_templa
     if (template_points.size() >= min_landmarks && centroid_size(landmarks_of(template_points)) > 0 &&
         centroid_size(landmarks_of(member_points)) > 0)
         worst = worst_piece(landmarks_of(template_points), landmarks_of(member_points));
-    std::optional<double> slack;
+    std::optional<double> tolerance;
     for (const ClassQuantity& constraint_quantity : quantities)
         if (constraint_quantity.kind == QuantityKind::constraint && constraint_quantity.unit == "%" && constraint_quantity.value)
-            slack = std::max(slack.value_or(0), std::abs(*constraint_quantity.value));
+            tolerance = std::max(tolerance.value_or(0), std::abs(*constraint_quantity.value));
     std::vector<ClassQuantity> fragment_list;
     const auto add = [&](const char* name, const std::optional<double>& value, const char* unit) {
         ClassQuantity& quantity = fragment_list.emplace_back();
@@ -106,7 +106,7 @@ std::vector<ClassQuantity> fragment_quantities(const ClassTemplate& class_templa
     };
     add("residual", worst ? std::optional((*worst)[0]) : std::nullopt, "");
     add("scale-tolerance", worst ? std::optional((*worst)[1]) : std::nullopt, "%");
-    add("slack", slack, "%");
+    add("min-tolerance", tolerance, "%");
     return fragment_list;
 }
 
@@ -123,11 +123,12 @@ std::vector<UsedThreshold> apply_class_thresholds(ReconstructOptions& options, c
     const std::vector<FragmentThreshold> of_class =
         learnt != nullptr ? fragment_thresholds(*learnt) : std::vector<FragmentThreshold>();
     const auto apply_threshold = [&](const char* name, double& value, double maximum) {
-        UsedThreshold& used_threshold = used.emplace_back(UsedThreshold{{name, 0, 0}, specified(name) ? "told" : "default"});
+        UsedThreshold& used_threshold = used.emplace_back(UsedThreshold{{name, 0, 0}, specified(name) ? "option" : "default"});
         const auto class_threshold =
             std::find_if(of_class.begin(), of_class.end(), [&](const auto& each) { return each.option == name; });
-        const bool is_slack = used_threshold.option == "slack";
-        if (class_threshold != of_class.end() && used_threshold.from != "told" && !(is_slack && class_threshold->value < value)) {
+        const bool is_tolerance = used_threshold.option == "min-tolerance";
+        if (class_threshold != of_class.end() && used_threshold.from != "option" &&
+            !(is_tolerance && class_threshold->value < value)) {
             value = std::min(class_threshold->value, maximum);
             used_threshold.members = class_threshold->members;
             used_threshold.from = "class";
@@ -136,7 +137,7 @@ std::vector<UsedThreshold> apply_class_thresholds(ReconstructOptions& options, c
     };
     apply_threshold("residual", options.residual, 10.0);
     apply_threshold("scale-tolerance", options.scale_tolerance, 1000.0);
-    apply_threshold("slack", options.slack, 1000.0);
+    apply_threshold("min-tolerance", options.min_tolerance, 1000.0);
     return used;
 }
 

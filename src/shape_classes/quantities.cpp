@@ -72,12 +72,12 @@ std::vector<Point> in_template_frame(const Mesh& mesh, const std::vector<Point>&
 
 namespace {
 
-/// The measure to which a constraint refers by id or name; nullptr if there is none.
+/// The attribute with the measure to which a constraint refers by id or name; nullptr if there is none.
 const Attribute* named(const JsonValue& parameters, const char* member, const Annotation& annotation) {
     const JsonValue* name = find_member(parameters, member);
     if (name == nullptr) return nullptr;
     for (const Attribute& attribute : annotation.attributes) {
-        if (attribute.type != AttributeType::measure) continue;
+        if (attribute.measure() == nullptr) continue;
         if (name->IsInt() ? attribute.id == name->GetInt() : name->IsString() && attribute.name == name->GetString())
             return &attribute;
     }
@@ -95,8 +95,8 @@ std::optional<ClassQuantity> ratio_of(AnnotatedMeshView shape, const Relationshi
     if (first == nullptr || second == nullptr) return {};
     ClassQuantity quantity{QuantityKind::proportion, relationship.id,
                            fmt::format("{} of {} / {} of {}", first->name, a->tag, second->name, b->tag), relationship.type};
-    const double below = evaluate(shape.mesh, *b, second->measure);
-    if (below > 0) quantity.value = evaluate(shape.mesh, *a, first->measure) / below;
+    const double below = evaluate(shape.mesh, *b, *second->measure());
+    if (below > 0) quantity.value = evaluate(shape.mesh, *a, *first->measure()) / below;
     return quantity;
 }
 
@@ -104,11 +104,12 @@ void add_attributes(AnnotatedMeshView shape, std::vector<ClassQuantity>& quantit
     for (const Annotation& annotation : shape.annotations.annotations)
         for (const Attribute& attribute : annotation.attributes) {
             ClassQuantity quantity{QuantityKind::attribute, annotation.id, attribute.name, annotation.tag};
-            if (attribute.type == AttributeType::measure) {
-                quantity.value = evaluate(shape.mesh, annotation, attribute.measure);
+            const Descriptor* descriptor = attribute.descriptor();
+            if (const Measure* measure = attribute.measure()) {
+                quantity.value = evaluate(shape.mesh, annotation, *measure);
                 quantity.unit = shape.annotations.unit;
-            } else if (attribute.type == AttributeType::descriptor && !attribute.descriptor.is_list &&
-                       attribute.descriptor.file.empty() && attribute.descriptor.values.size() == 1) {
+            } else if (descriptor != nullptr && !descriptor->is_list && descriptor->file.empty() &&
+                       descriptor->values.size() == 1) {
                 quantity.value = evaluate(shape.mesh, annotation, attribute.name);
                 if (!quantity.value) continue;  // of a kind that cannot be computed
                 quantity.unit = descriptor_unit(attribute.name, shape.annotations.unit);

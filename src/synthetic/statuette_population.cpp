@@ -86,14 +86,14 @@ std::vector<StatuetteParameters> draw_population(const PopulationOptions& option
 }
 
 bool ProportionedOptions::is_fixed(const std::string& size) const {
-    return !none && std::find(fixed.begin(), fixed.end(), size) != fixed.end();
+    return !no_fixed_ratios && std::find(fixed.begin(), fixed.end(), size) != fixed.end();
 }
 
 void ProportionedOptions::declare_options(OptionList& list) {
     list("fixed", fixed, "names of the sizes that have fixed ratios to each other, separated by commas",
          Choices(std::vector<std::string>(size_names.begin(), size_names.end())))
         .words();
-    list("none", none, "no fixed ratios of sizes, except the equal lengths of the two arms");
+    list("no-fixed-ratios", no_fixed_ratios, "no fixed ratios of sizes, except the equal lengths of the two arms");
     list("objects", objects, "number of statuettes", Range{1, 100000});
     list("size-deviation", size_deviation, "standard deviation, over the statuettes, of the logarithm of the overall size",
          Range{0, 0.2});
@@ -109,7 +109,8 @@ void ProportionedOptions::declare_options(OptionList& list) {
 
 std::vector<StatuetteParameters> draw_population(const ProportionedOptions& options) {
     check_options(options, "population of statuettes");
-    if (!options.none && options.fixed.size() < 2) fail_usage("--fixed lists a single measure", "give at least two measures");
+    if (!options.no_fixed_ratios && options.fixed.size() < 2)
+        fail_usage("--fixed lists a single measure", "give at least two measures");
     PopulationOptions population;
     population.objects = options.objects;
     population.seed = options.seed;

@@ -96,8 +96,8 @@ private:
         for (const auto& note : result_.annotations->notes) remark(part.name, note);
         for (const Annotation& annotation : result_.annotations->annotations)
             for (const Attribute& attribute : annotation.attributes) {
-                const std::string& array = attribute.descriptor.file;
-                if (array.empty()) continue;
+                if (attribute.descriptor() == nullptr || attribute.descriptor()->file.empty()) continue;
+                const std::string& array = attribute.descriptor()->file;
                 const std::string at = fmt::format("the attribute '{}'", attribute.name);
                 if (!options_.allow_outside) try {
                         (void)file_inside(array, part.file.parent_path(), part.name, at, "the folder of the annotations",

@@ -23,6 +23,9 @@ public:
     void keep_old_values(AnnotationSet& set) const;
 
 private:
+    /// Maps the pins of a measure to the target. False if a pin has no counterpart.
+    bool carry_pins(const Measure& measure, Measure& moved) const;
+
     const PathTracer& tracer_;
     bool refined_;
     /// For each measure that lost a pin: annotation id, attribute id, old value.

@@ -254,7 +254,7 @@ MarkedParts BoundMesh::marked(const AnnotationTable& table, bool protects) const
     if (!protects) return parts;
     for (const Annotation& annotation : annotations->annotations)
         for (const Attribute& attribute : annotation.attributes)
-            for (const Index v : pins_of(attribute.measure)) parts.vertices.at(v) = true;
+            for (const Index v : pins_of(attribute)) parts.vertices.at(v) = true;
     return parts;
 }
 

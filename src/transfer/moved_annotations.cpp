@@ -38,7 +38,8 @@ void mirror_curves(const Mesh& mesh, Annotation& annotation) {
         if (annotation.type == AnnotationType::region) std::reverse(curve.begin(), curve.end());
     }
     for (Attribute& attribute : annotation.attributes)
-        for (SurfacePoint& p : attribute.measure.locations) exchange_corners(mesh, p);
+        if (Measure* measure = attribute.measure())
+            for (SurfacePoint& p : measure->locations) exchange_corners(mesh, p);
 }
 
 /// Moves the descriptors of a set from one unit of coordinates to another.
@@ -100,10 +101,11 @@ AnnotationSet moved_annotations(AnnotatedMeshView object, const Motion& motion, 
     DescriptorMover descriptors(object, motion, unit);
     for (Annotation& annotation : result.annotations) {
         for (Attribute& attribute : annotation.attributes) {
-            turn(attribute.measure.direction);
-            if (attribute.type == AttributeType::measure && attribute.measure.unit == object.annotations.unit)
-                attribute.measure.unit = unit;
-            if (attribute.type == AttributeType::descriptor) descriptors.move(annotation, attribute.name, attribute.descriptor);
+            if (Measure* measure = attribute.measure()) {
+                turn(measure->direction);
+                if (measure->unit == object.annotations.unit) measure->unit = unit;
+            }
+            if (Descriptor* descriptor = attribute.descriptor()) descriptors.move(annotation, attribute.name, *descriptor);
         }
         if (motion.mirrors()) mirror_curves(object.mesh, annotation);
     }

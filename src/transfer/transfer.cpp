@@ -34,7 +34,7 @@ void check_indices(AnnotatedMeshView source) {
             for (const Index v : line) check(v, source.mesh.number_of_vertices(), "vertex");
         for (const Index f : annotation.faces) check(f, source.mesh.number_of_faces(), "face");
         for (const Attribute& attribute : annotation.attributes)
-            for (const Index v : pins_of(attribute.measure)) check(v, source.mesh.number_of_vertices(), "vertex");
+            for (const Index v : pins_of(attribute)) check(v, source.mesh.number_of_vertices(), "vertex");
     }
 }
 
@@ -151,7 +151,7 @@ void Transfer::match() {
     std::vector<Index> vertices = edges_.vertices();
     for (const Annotation& annotation : source_.annotations.annotations)
         for (const Attribute& attribute : annotation.attributes) {
-            const std::vector<Index> pins = pins_of(attribute.measure);
+            const std::vector<Index> pins = pins_of(attribute);
             vertices.insert(vertices.end(), pins.begin(), pins.end());
         }
     tracer_.match(std::move(vertices));

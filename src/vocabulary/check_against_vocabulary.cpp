@@ -57,7 +57,7 @@ private:
 
     void attribute(std::size_t concept_index, const Attribute& attribute, const std::string& pointer) {
         const AllowedAttribute* allowed = search_.attribute_of(concept_index, attribute.name);
-        const bool is_text = attribute.type == AttributeType::semantic;
+        const Note* note = attribute.note();
         if (allowed == nullptr) {
             std::vector<std::string> names;
             for (const AllowedAttribute* candidate : search_.attributes_of(concept_index)) {
@@ -67,30 +67,30 @@ private:
             const std::string text =
                 fmt::format("the attribute '{}' is not among those of '{}'{}", attribute.name,
                             search_.vocabulary().concepts[concept_index].id, did_you_mean(near_misses(attribute.name, names)));
-            if (is_text || options_.strict) defect(pointer + "/name", text);
+            if (note != nullptr || options_.strict) defect(pointer + "/name", text);
             else remark(pointer + "/name", text);
             return;
         }
-        if (is_text && allowed->quantitative())
-            defect(pointer, fmt::format("'{}' is a quantity in the vocabulary, but has the text value '{}'", attribute.name,
-                                        attribute.note));
-        else if (!is_text && !allowed->values.empty())
+        if (note != nullptr && allowed->quantitative())
+            defect(pointer,
+                   fmt::format("'{}' is a quantity in the vocabulary, but has the text value '{}'", attribute.name, note->text));
+        else if (note == nullptr && !allowed->values.empty())
             defect(pointer, fmt::format("'{}' has a list of values in the vocabulary, but is a quantity here", attribute.name));
-        else if (is_text) value(*allowed, attribute, pointer);
+        else if (note != nullptr) value(*allowed, attribute.name, note->text, pointer);
         else quantity(*allowed, attribute, pointer);
     }
 
-    void value(const AllowedAttribute& allowed, const Attribute& attribute, const std::string& pointer) {
-        if (allowed.values.empty() || term_of(allowed, attribute.note) != nullptr) return;
+    void value(const AllowedAttribute& allowed, const std::string& name, const std::string& text, const std::string& pointer) {
+        if (allowed.values.empty() || term_of(allowed, text) != nullptr) return;
         std::vector<std::string> names, all_names;
         for (const Term& term : allowed.values) {
             names.push_back(term.name);
             all_names.push_back(term.name);
             for (const auto& [language, label] : term.labels) all_names.push_back(label);
         }
-        std::string hint = did_you_mean(near_misses(attribute.note, all_names));
+        std::string hint = did_you_mean(near_misses(text, all_names));
         if (hint.empty() && names.size() <= 12) hint = ": its values are " + quoted(names);
-        defect(pointer + "/note", fmt::format("'{}' is not a value of '{}'{}", attribute.note, attribute.name, hint));
+        defect(pointer + "/note", fmt::format("'{}' is not a value of '{}'{}", text, name, hint));
     }
 
     void quantity(const AllowedAttribute& allowed, const Attribute& attribute, const std::string& pointer) {

@@ -195,10 +195,10 @@ private:
 
     static bool satisfies(const AttributeRule& rule, const AllowedAttribute* allowed, const Attribute& attribute,
                           std::string& text) {
-        if (attribute.type == AttributeType::semantic) {
-            text = in_quotes(attribute.note);
+        if (const Note* note = attribute.note()) {
+            text = in_quotes(note->text);
             if (rule.min || rule.max || !rule.unit.empty()) return false;
-            return rule.values.empty() || is_one_of(attribute.note, rule.values, allowed);
+            return rule.values.empty() || is_one_of(note->text, rule.values, allowed);
         }
         const auto [values, unit, stale] = attribute_values(attribute);
         text = values.empty() ? "without a value" : text_of(values.front()) + (unit.empty() ? "" : " " + unit);

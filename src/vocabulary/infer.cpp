@@ -73,7 +73,7 @@ private:
     };
 
     static bool inferred(const Attribute& attribute) {
-        return attribute.type == AttributeType::semantic && attribute.origin.starts_with("rule ");
+        return attribute.note() != nullptr && attribute.note()->origin.starts_with("rule ");
     }
 
     [[nodiscard]] std::vector<Annotation>& annotations() { return result_.annotations.annotations; }
@@ -162,8 +162,8 @@ private:
             return value;
         }
         const Attribute& attribute = *matches.front();
-        if (attribute.type == AttributeType::semantic) {
-            value.word = attribute.note;
+        if (const Note* note = attribute.note()) {
+            value.word = note->text;
             return value;
         }
         const Figures figures = attribute_values(attribute);
@@ -271,26 +271,26 @@ private:
         const std::string prefix = detail::annotation_name(annotation) + ": ";
         const std::string claim = fmt::format("the rule {} infers {}, because {}", in_quotes(rule.id), in_quotes(value), why);
         for (const Attribute* other : existing) {
-            if (other->type == AttributeType::semantic) {
-                const Term* stated = term_of(allowed, other->note);
-                if (folded(stated == nullptr ? other->note : stated->name) == folded(value)) return false;  // already stated
+            const Note* note = other->note();
+            if (note != nullptr) {
+                const Term* stated = term_of(allowed, note->text);
+                if (folded(stated == nullptr ? note->text : stated->name) == folded(value)) return false;  // already stated
             }
             blocked_.insert(key);
             result_.contradictions.push_back(fmt::format(
                 "{}{}{}, but {}", prefix, in_quotes(allowed.name),
-                inferred(*other)
-                    ? fmt::format(" is not inferred: the {} infers {}", other->origin, in_quotes(other->note))
-                    : " is stated to be " + in_quotes(other->type == AttributeType::semantic ? other->note : "a number"),
+                inferred(*other) ? fmt::format(" is not inferred: the {} infers {}", note->origin, in_quotes(note->text))
+                                 : " is stated to be " + in_quotes(note != nullptr ? note->text : "a number"),
                 claim));
             return false;
         }
         Attribute attribute;
         attribute.id = next_free_id(annotation.attributes);
         attribute.name = allowed.name;
-        attribute.note = value;
-        attribute.origin = fmt::format("rule {}: {}", in_quotes(rule.id), why);
+        const Note note{value, fmt::format("rule {}: {}", in_quotes(rule.id), why)};
+        attribute.value = note;
         annotation.attributes.push_back(attribute);
-        result_.inferred.push_back({annotation.id, allowed.name, value, rule.id, attribute.origin});
+        result_.inferred.push_back({annotation.id, allowed.name, value, rule.id, note.origin});
         return true;
     }
 

@@ -60,23 +60,23 @@ AnnotationSet everything(const Mesh& mesh) {
     region.tag = "fl\xC3\xB6wer \"x\"";
     region.colour = {200, 30, 60};
     region.faces = cells(8, 1, 3, 1, 4);
-    region.attributes.push_back({0, "glaze", AttributeType::semantic, "cobalt", {}, {}});
-    Attribute height{1, "height", AttributeType::measure, "", {}, {}};
-    height.measure.tool = "bounding";
-    height.measure.points = {12, 28};
-    height.measure.direction = std::array<double, 3>{0, 0.1, 1};
-    height.measure.value = 31.25;
-    height.measure.unit = "mm";
-    height.measure.stale = true;
-    height.measure.locations = {face_point(3, {0.25, 0.25, 0.5}), face_point(4, {1, 0, 0})};
+    region.attributes.push_back({0, "glaze", Note{"cobalt", ""}});
+    Attribute height{1, "height", Measure()};
+    height.measure()->tool = "bounding";
+    height.measure()->points = {12, 28};
+    height.measure()->direction = std::array<double, 3>{0, 0.1, 1};
+    height.measure()->value = 31.25;
+    height.measure()->unit = "mm";
+    height.measure()->stale = true;
+    height.measure()->locations = {face_point(3, {0.25, 0.25, 0.5}), face_point(4, {1, 0, 0})};
     region.attributes.push_back(height);
-    Attribute area{7, "area", AttributeType::descriptor, "", {}, {}};
-    area.descriptor.values = {0.1};
-    area.descriptor.unit = "mm2";
+    Attribute area{7, "area", Descriptor()};
+    area.descriptor()->values = {0.1};
+    area.descriptor()->unit = "mm2";
     region.attributes.push_back(area);
-    Attribute list{8, "radii", AttributeType::descriptor, "", {}, {}};
-    list.descriptor.values = {1, 2.5};
-    list.descriptor.is_list = true;
+    Attribute list{8, "radii", Descriptor()};
+    list.descriptor()->values = {1, 2.5};
+    list.descriptor()->is_list = true;
     region.attributes.push_back(list);
     Annotation line;
     line.id = 1;
@@ -111,8 +111,8 @@ TEST(AnnotationFile, WriteReadWriteGivesTheSameBytes) {
         EXPECT_EQ(back.annotations[i].tag, set.annotations[i].tag);
         EXPECT_EQ(back.annotations[i].attributes.size(), set.annotations[i].attributes.size());
     }
-    EXPECT_EQ(back.annotations[1].attributes[1].measure.locations[0].weights,
-              set.annotations[1].attributes[1].measure.locations[0].weights);
+    EXPECT_EQ(back.annotations[1].attributes[1].measure()->locations[0].weights,
+              set.annotations[1].attributes[1].measure()->locations[0].weights);
     EXPECT_EQ(first.find("folder"), std::string::npos) << "no folder in a result file";
 }
 
@@ -132,7 +132,7 @@ TEST(AnnotationFile, TheThesisFormatIsReadExactly) {
     ASSERT_EQ(set.annotations.size(), 3U);
     EXPECT_EQ(set.annotations[0].faces, (std::vector<Index>{0, 1}));
     EXPECT_EQ(set.annotations[0].colour, (std::array<int, 3>{1, 2, 255}));
-    EXPECT_EQ(set.annotations[0].attributes[3].measure.direction, (std::array<double, 3>{0, 1.5, 0}));
+    EXPECT_EQ(set.annotations[0].attributes[3].measure()->direction, (std::array<double, 3>{0, 1.5, 0}));
     EXPECT_EQ(set.annotations[1].polylines, (std::vector<std::vector<Index>>{{0, 1, 2}, {4, 5}}));
     EXPECT_EQ(set.annotations[2].points, std::vector<Index>{15});
     ASSERT_EQ(set.notes.size(), 1U);  // it does not identify its mesh
@@ -159,10 +159,10 @@ TEST(AnnotationFile, ThePrototypesFilesAreRead) {
     EXPECT_EQ(set.annotations[0].id, 4);
     EXPECT_EQ(set.annotations[0].faces, (std::vector<Index>{0, 1}));
     EXPECT_EQ(set.annotations[0].colour, (std::array<int, 3>{1, 2, 3}));
-    EXPECT_EQ(set.annotations[0].attributes[0].measure.tool, "bounding");
-    EXPECT_EQ(set.annotations[0].attributes[1].measure.value, 1.5);
-    EXPECT_EQ(set.annotations[0].attributes[2].type, AttributeType::descriptor);
-    EXPECT_EQ(set.annotations[0].attributes[3].note, "text");
+    EXPECT_EQ(set.annotations[0].attributes[0].measure()->tool, "bounding");
+    EXPECT_EQ(set.annotations[0].attributes[1].measure()->value, 1.5);
+    EXPECT_NE(set.annotations[0].attributes[2].descriptor(), nullptr);
+    EXPECT_EQ(set.annotations[0].attributes[3].note()->text, "text");
     EXPECT_GE(set.notes.size(), 3U);
     expect_error(with(R"({"id": "x", "tag": "", "color": [0, 0, 0], "type": "Area"})"), mesh, "/annotations/0/id",
                  "whole number");

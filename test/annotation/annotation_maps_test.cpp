@@ -147,18 +147,18 @@ TEST(AnnotationMaps, ARegionWithoutFacesBecomesALineOrAPointWithANote) {
 TEST(AnnotationMaps, PinsFollowAndValuesAreStale) {
     Annotation annotation;
     Attribute& attribute = annotation.attributes.emplace_back();
-    attribute.type = AttributeType::measure;
-    attribute.measure.tool = "ruler";
-    attribute.measure.points = {0, 2};
-    attribute.measure.value = 5.0;
-    attribute.measure.unit = "mm";
+    attribute.value = Measure();
+    attribute.measure()->tool = "ruler";
+    attribute.measure()->points = {0, 2};
+    attribute.measure()->value = 5.0;
+    attribute.measure()->unit = "mm";
     move_pins(annotation, {3, 4, 1}, 5);
-    EXPECT_EQ(attribute.measure.points, (std::vector<Index>{3, 1}));
-    EXPECT_TRUE(attribute.measure.stale);
+    EXPECT_EQ(attribute.measure()->points, (std::vector<Index>{3, 1}));
+    EXPECT_TRUE(attribute.measure()->stale);
     move_pins(annotation, {3, no_index, 1, 2}, 5);
-    EXPECT_EQ(attribute.type, AttributeType::descriptor);
-    EXPECT_EQ(attribute.descriptor.values, std::vector<double>{5.0});
-    EXPECT_EQ(attribute.descriptor.unit, "mm");
+    EXPECT_NE(attribute.descriptor(), nullptr);
+    EXPECT_EQ(attribute.descriptor()->values, std::vector<double>{5.0});
+    EXPECT_EQ(attribute.descriptor()->unit, "mm");
 }
 
 TEST(AnnotationMaps, MisuseIsAnError) {

@@ -67,12 +67,10 @@ TEST(Mutation, AnnotationFiles) {
     const Mesh mesh = spheres(2);
     AnnotationSet set = apply_recipe(parse_json(recipe, "r"), mesh, {}, "r");
     Annotation& cap = *std::find_if(set.annotations.begin(), set.annotations.end(), [](const auto& a) { return a.id == 1; });
-    Measure& measure = cap.attributes.at(0).measure;
+    Measure& measure = *cap.attributes.at(0).measure();
     measure.repeats = {measure.points, {3, 4}};
     measure.uncertainty = 0.125;
-    Attribute inferred;
-    inferred.id = 7, inferred.name = "size", inferred.note = "small", inferred.origin = "rule 'small': height 0.2 < 0.5";
-    cap.attributes.push_back(inferred);
+    cap.attributes.push_back({7, "size", Note{"small", "rule 'small': height 0.2 < 0.5"}});
     const std::string whole = to_text(annotations_to_json({mesh, set}, "m.ply", {}));
     // Without the mesh's counts and checksum, so that damage reaches the selections.
     const std::size_t begin = whole.find("  \"mesh\": {"), end = whole.find("},\n", begin) + 3;

@@ -52,9 +52,9 @@ struct Ball : AnnotatedMesh {
             if (centroid(mesh, f).z() > 0) cap.faces.push_back(f.idx());
         Attribute height;
         height.name = "height";
-        height.type = AttributeType::descriptor;
-        height.descriptor.values = {r / 10};
-        height.descriptor.unit = "cm";
+        height.value = Descriptor();
+        height.descriptor()->values = {r / 10};
+        height.descriptor()->unit = "cm";
         cap.attributes.push_back(height);
         annotations.annotations = {poles, cap};
     }
@@ -260,7 +260,7 @@ TEST(ProposedProportions, BecomeConstraintsOfTheTemplate) {
     EXPECT_STREQ(parameters["measure1"].GetString(), "belt width");
     EXPECT_STREQ(parameters["measure2"].GetString(), "cap width");
     // The measures now exist, with values, and a second proposal adds nothing.
-    EXPECT_NEAR(*proposals.set.find(1)->attributes.back().measure.value, 2, 1e-12);
+    EXPECT_NEAR(*proposals.set.find(1)->attributes.back().measure()->value, 2, 1e-12);
     Relationship copy = r;
     RelationGraph relabelled;
     relabelled.relationships.push_back(copy);

@@ -39,7 +39,7 @@ TEST(MakeTechniqueCommand, WritesACollectionWithItsTruth) {
         std::map<std::string, double> measured;
         for (const Annotation& annotation : set.annotations)
             for (const Attribute& attribute : annotation.attributes)
-                measured[attribute.name] = attribute.measure.value.value_or(0);
+                measured[attribute.name] = attribute.measure()->value.value_or(0);
         EXPECT_NEAR(measured["total height"], planted("height"), 0.01 * planted("height"));
         EXPECT_NEAR(measured["base diameter"], planted("base-diameter"), 0.02 * planted("base-diameter"));
         EXPECT_NEAR(measured["head height"], planted("head-height"), 0.03 * planted("head-height"));

@@ -56,8 +56,8 @@ TEST(AttributeTable, EditsAreApplied) {
     const Annotation* annotation = set.find(3);
     ASSERT_EQ(annotation->attributes.size(), 2U);
     EXPECT_EQ(annotation->tag, "better");
-    EXPECT_EQ(annotation->attributes[0].descriptor.values, std::vector<double>{12.5});
-    EXPECT_EQ(annotation->attributes[1].note, "old; very");
+    EXPECT_EQ(annotation->attributes[0].descriptor()->values, std::vector<double>{12.5});
+    EXPECT_EQ(annotation->attributes[1].note()->text, "old; very");
 }
 
 TEST(AttributeTable, RefusalsNameLineAndColumn) {

@@ -52,10 +52,10 @@ AnnotationSet edited(const AnnotationSet& set, const Mesh& mesh, std::uint64_t s
             }
             case 8:
                 for (Attribute& attribute : annotation.attributes) {  // other possible differences, one at a time
-                    Measure& measure = attribute.measure;
-                    if (attribute.type == AttributeType::semantic) {
-                        attribute.origin += "rule";
-                    } else if (attribute.type == AttributeType::measure) {
+                    if (Note* note = attribute.note()) {
+                        note->origin += "rule";
+                    } else if (attribute.measure() != nullptr) {
+                        Measure& measure = *attribute.measure();
                         const auto field = random() % 3;
                         if (field == 0) measure.uncertainty = measure.uncertainty.value_or(0) + 0.5;
                         if (field == 1 && measure.tool == "tape") measure.exact = !measure.exact;
@@ -116,8 +116,8 @@ TEST(Merge, TakesUncertaintiesAndRepeatsOfOneSide) {
     AnnotationSet changed = copy_of(base);
     for (Annotation& annotation : changed.annotations)
         for (Attribute& attribute : annotation.attributes)
-            if (attribute.type == AttributeType::measure)
-                attribute.measure.uncertainty = 3, attribute.measure.repeats.push_back(attribute.measure.points);
+            if (attribute.measure() != nullptr)
+                attribute.measure()->uncertainty = 3, attribute.measure()->repeats.push_back(attribute.measure()->points);
     AnnotationSet their_set = copy_of(base);
     their_set.annotations.back().tag = "another";
     for (const bool swapped : {false, true}) {
@@ -202,8 +202,8 @@ TEST(Merge, NamesEachKindOfConflict) {
     a.tag = "crown";
     b.tag = "lid";
     a.colour = {1, 1, 1};  // one side only
-    a.attributes[0].measure.value = 1;
-    b.attributes[0].measure.value = 2;
+    a.attributes[0].measure()->value = 1;
+    b.attributes[0].measure()->value = 2;
     a.faces.pop_back();
     b.faces.erase(b.faces.begin());
     find(ours, "two patches").tag = "changed";

@@ -25,8 +25,7 @@ AnnotationSet tile_set(const Mesh& mesh) {
         Attribute area;
         area.id = 0;
         area.name = "area";
-        area.type = AttributeType::descriptor;
-        area.descriptor = {{4}, false, "", "mm^2", false};
+        area.value = Descriptor{{4}, false, "", "mm^2", false};
         region.attributes.push_back(area);
         region.attributes.push_back(semantic(1, "glaze", tag));
         set.annotations.push_back(region);
@@ -34,8 +33,7 @@ AnnotationSet tile_set(const Mesh& mesh) {
     Attribute height;
     height.id = 5;
     height.name = "height";
-    height.type = AttributeType::measure;
-    height.measure = {"ruler", {4, 24}, {}, {}, 4, "mm", false};
+    height.value = Measure{"ruler", {4, 24}, {}, {}, 4, "mm", false};
     set.annotations[1].attributes.push_back(height);
     Annotation corner;
     corner.id = 3;
@@ -78,7 +76,7 @@ TEST(Edit, FieldsAndAttributes) {
     EXPECT_EQ(west->colour, (std::array<int, 3>{1, 2, 3}));
     EXPECT_EQ(west->note, "seen");
     ASSERT_EQ(west->attributes.size(), 2U);
-    EXPECT_EQ(west->attributes[1].note, "very old");
+    EXPECT_EQ(west->attributes[1].note()->text, "very old");
     EXPECT_EQ(notes.size(), 1U) << "a new id is said";
 }
 
@@ -90,14 +88,14 @@ TEST(Edit, MergeAndSplitAreInverse) {
     ASSERT_EQ(set.annotations.size(), 2U);
     const Annotation& sides = set.annotations[0];
     EXPECT_EQ(sides.faces.size(), 16U);
-    EXPECT_EQ(sides.attributes[0].descriptor.values, std::vector<double>{8}) << "the area was measured again";
+    EXPECT_EQ(sides.attributes[0].descriptor()->values, std::vector<double>{8}) << "the area was measured again";
     EXPECT_EQ(sides.attributes.size(), 3U) << "the height came along";
     edit_annotations(mesh, set, edits(R"({"annotation": "sides", "split": true})"), "edits");
     ASSERT_EQ(set.annotations.size(), 3U);
     EXPECT_EQ(set.annotations[0].id, 1);
     EXPECT_EQ(set.annotations[0].faces, before.annotations[0].faces);
     EXPECT_EQ(set.annotations[1].faces, before.annotations[1].faces);
-    EXPECT_EQ(set.annotations[0].attributes[0].descriptor.values, std::vector<double>{4});
+    EXPECT_EQ(set.annotations[0].attributes[0].descriptor()->values, std::vector<double>{4});
     EXPECT_EQ(set.annotations[0].attributes.size(), 2U) << "the measure went where its pins are";
     EXPECT_EQ(set.annotations[1].attributes.size(), 3U);
 }
@@ -109,9 +107,9 @@ TEST(Edit, TextsFindTheirAttributeByName) {
                      "edits");
     const Annotation& left = set.annotations[0];
     ASSERT_EQ(left.attributes.size(), 4U) << "area, glaze, the height that came along, age";
-    EXPECT_EQ(left.attributes[1].note, "none");
+    EXPECT_EQ(left.attributes[1].note()->text, "none");
     EXPECT_EQ(left.attributes[3].name, "age");
-    EXPECT_EQ(left.attributes[3].note, "old");
+    EXPECT_EQ(left.attributes[3].note()->text, "old");
 }
 
 TEST(Edit, DuplicateAndRemove) {
@@ -179,22 +177,21 @@ TEST(RenameUnit, UnitsOfLengthsFollowAndNoNumberChanges) {
         Attribute attribute;
         attribute.id = 10 + static_cast<int>(set.annotations[1].attributes.size());
         attribute.name = name;
-        attribute.type = AttributeType::descriptor;
-        attribute.descriptor = {{2}, false, "", unit, false};
+        attribute.value = Descriptor{{2}, false, "", unit, false};
         set.annotations[1].attributes.push_back(attribute);
     }
     const auto units = [&] {
         std::vector<std::string> result;
         for (const Attribute& attribute : set.annotations[1].attributes)
-            if (attribute.type == AttributeType::measure) result.push_back(attribute.measure.unit);
-            else if (attribute.type == AttributeType::descriptor) result.push_back(attribute.descriptor.unit);
+            if (attribute.measure() != nullptr) result.push_back(attribute.measure()->unit);
+            else if (attribute.descriptor() != nullptr) result.push_back(attribute.descriptor()->unit);
         return result;
     };
     change_length_unit(mesh, set, "cm");
     EXPECT_EQ(set.unit, "cm");
     EXPECT_EQ(units(), (std::vector<std::string>{"cm^2", "cm", "1/cm", "g", "mmol"}));
-    EXPECT_EQ(*set.annotations[1].attributes[2].measure.value, 4);
-    EXPECT_EQ(set.annotations[1].attributes[0].descriptor.values, std::vector<double>{4});
+    EXPECT_EQ(*set.annotations[1].attributes[2].measure()->value, 4);
+    EXPECT_EQ(set.annotations[1].attributes[0].descriptor()->values, std::vector<double>{4});
     // No unit, and back: values computed from the coordinates have a unit again.
     change_length_unit(mesh, set, "");
     EXPECT_EQ(units(), (std::vector<std::string>{"", "", "1/cm", "g", "mmol"}));

@@ -72,7 +72,7 @@ TEST(IiifComments, LabelsBecomeTags) {
     ASSERT_EQ(placed.set.annotations.size(), 1U);
     EXPECT_EQ(placed.set.annotations[0].tag, "rim");
     ASSERT_EQ(placed.set.annotations[0].attributes.size(), 1U);
-    EXPECT_EQ(placed.set.annotations[0].attributes[0].note, "worn");
+    EXPECT_EQ(placed.set.annotations[0].attributes[0].note()->text, "worn");
 }
 
 TEST(IiifComments, WellKnownText) {

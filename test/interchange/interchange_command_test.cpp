@@ -116,10 +116,10 @@ TEST(InterchangeCommand, EditByFlagsAndByList) {
     const AnnotationSet edited = folder.read("b.ant.json");
     EXPECT_EQ(edited.find(3)->tag, "<new>");
     EXPECT_EQ(edited.find(3)->colour, (std::array<int, 3>{255, 0, 16}));
-    EXPECT_EQ(edited.find(3)->attributes.back().note, "old, \"very\"");
+    EXPECT_EQ(edited.find(3)->attributes.back().note()->text, "old, \"very\"");
     // An option given twice leaves a file that can be read.
     ASSERT_EQ(folder.run("edit", {"a.ant.json", "twice.ant.json"}, "--annotation 3 --attribute a=1 --attribute b=2").code, 0);
-    EXPECT_EQ(folder.read("twice.ant.json").find(3)->attributes.back().note, "2");
+    EXPECT_EQ(folder.read("twice.ant.json").find(3)->attributes.back().note()->text, "2");
     (void)folder.file("e.json",
                       R"({"format": "ostraka-annotation-edits", "edits": [{"annotation": "two patches", "split": true}]})");
     const auto list = folder.run("edit", {"a.ant.json", "c.ant.json"}, "--edits " + folder.at("e.json"));
@@ -139,8 +139,7 @@ TEST(InterchangeCommand, EditOfClassUnitAndUp) {
         Attribute attribute;
         attribute.id = id;
         attribute.name = name;
-        attribute.type = AttributeType::descriptor;
-        attribute.descriptor = {{2}, false, "", unit, false};
+        attribute.value = Descriptor{{2}, false, "", unit, false};
         cap.attributes.push_back(attribute);
     };
     descriptor(0, "area", "mm^2");
@@ -155,15 +154,15 @@ TEST(InterchangeCommand, EditOfClassUnitAndUp) {
     EXPECT_EQ(after.unit, "cm");
     EXPECT_EQ(*after.up, (std::array<double, 3>{0, 0, -1}));
     const auto& attributes = after.annotations.at(0).attributes;
-    EXPECT_EQ(attributes.at(0).descriptor.unit, "cm^2");
-    EXPECT_EQ(attributes.at(1).descriptor.unit, "1/cm");
-    EXPECT_EQ(attributes.at(2).descriptor.unit, "g");
-    EXPECT_EQ(attributes.at(0).descriptor.values.at(0), 2) << "no number changes";
+    EXPECT_EQ(attributes.at(0).descriptor()->unit, "cm^2");
+    EXPECT_EQ(attributes.at(1).descriptor()->unit, "1/cm");
+    EXPECT_EQ(attributes.at(2).descriptor()->unit, "g");
+    EXPECT_EQ(attributes.at(0).descriptor()->values.at(0), 2) << "no number changes";
     ASSERT_EQ(folder.run("edit", {"n.ant.json", "o.ant.json"}, "--set-unit '' --annotation cap --tag lid").code, 0);
     const AnnotationSet bare = folder.read("o.ant.json");
     EXPECT_EQ(bare.unit, "");
     EXPECT_EQ(bare.annotations.at(0).tag, "lid");
-    EXPECT_EQ(bare.annotations.at(0).attributes.at(0).descriptor.unit, "");
+    EXPECT_EQ(bare.annotations.at(0).attributes.at(0).descriptor()->unit, "");
     EXPECT_EQ(folder.run("edit", {"n.ant.json", "p.ant.json"}, "--set-up=0,0,0").code, 2);
     EXPECT_EQ(folder.run("edit", {"n.ant.json", "p.ant.json"}, "--set-up=0,0").code, 2);
     EXPECT_FALSE(std::filesystem::exists(folder / "p.ant.json"));

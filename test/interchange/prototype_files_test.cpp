@@ -39,15 +39,16 @@ TEST(PrototypeFiles, AnnotationsRoundTrip) {
         for (std::size_t k = 0; k < before.attributes.size(); ++k) {
             const Attribute &expected = before.attributes[k], &actual = after.attributes[k];
             EXPECT_EQ(actual.name, expected.name);
-            if (expected.type == AttributeType::semantic) {
-                EXPECT_EQ(actual.note, expected.note);
+            if (expected.note() != nullptr) {
+                ASSERT_NE(actual.note(), nullptr);
+                EXPECT_EQ(actual.note()->text, expected.note()->text);
             }
-            if (expected.type != AttributeType::measure) continue;
-            EXPECT_EQ(actual.measure.points, expected.measure.points);
-            EXPECT_EQ(actual.measure.tool, expected.measure.tool);
-            EXPECT_EQ(actual.measure.direction, expected.measure.direction);
-            if (expected.measure.value) {
-                EXPECT_EQ(actual.measure.value, expected.measure.value);
+            if (expected.measure() == nullptr) continue;
+            EXPECT_EQ(actual.measure()->points, expected.measure()->points);
+            EXPECT_EQ(actual.measure()->tool, expected.measure()->tool);
+            EXPECT_EQ(actual.measure()->direction, expected.measure()->direction);
+            if (expected.measure()->value) {
+                EXPECT_EQ(actual.measure()->value, expected.measure()->value);
             }
         }
     }
@@ -73,7 +74,7 @@ TEST(PrototypeFiles, FacetsRoundTrip) {
     for (std::size_t i = 0; i < regions.size(); ++i) {
         EXPECT_EQ(read.annotations[i].tag, regions[i]->tag);
         EXPECT_EQ(read.annotations[i].faces, regions[i]->faces);
-        EXPECT_EQ(read.annotations[i].attributes[0].note, i + 2 == regions.size() ? "fracture" : "external");
+        EXPECT_EQ(read.annotations[i].attributes[0].note()->text, i + 2 == regions.size() ? "fracture" : "external");
     }
     // Borders with reversed direction: the inner vertices determine the side.
     std::string turned;

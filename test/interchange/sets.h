@@ -56,7 +56,7 @@ inline Attribute semantic(int id, const std::string& name, const std::string& no
     Attribute attribute;
     attribute.id = id;
     attribute.name = name;
-    attribute.note = note;
+    attribute.value = Note{note, {}};
     return attribute;
 }
 
@@ -103,36 +103,34 @@ inline AnnotationSet wild_set(const Mesh& mesh) {
     Attribute measure;
     measure.id = 4;
     measure.name = "height, \"max\"";
-    measure.type = AttributeType::measure;
-    measure.measure = {"bounding",
-                       {4, 5},
-                       {face_point(0, {0.25, 0.5, 0.25}), face_point(1, {1, 0, 0})},
-                       std::array<double, 3>{0, -0.6, 0.8},
-                       1.0 / 3,
-                       "mm",
-                       true};
+    measure.value = Measure{"bounding",
+                            {4, 5},
+                            {face_point(0, {0.25, 0.5, 0.25}), face_point(1, {1, 0, 0})},
+                            std::array<double, 3>{0, -0.6, 0.8},
+                            1.0 / 3,
+                            "mm",
+                            true};
     upper.attributes.push_back(measure);
     measure.id = 5;
     measure.name = "=way";
-    measure.measure = {"tape", {1, 2, 3}, {}, {}, {}, "", false};
-    measure.measure.repeats = {{2, 2, 3}, {1, 7, 3}};
-    measure.measure.uncertainty = 0.25;
-    measure.measure.exact = true;
+    measure.value = Measure{"tape", {1, 2, 3}, {}, {}, {}, "", false};
+    measure.measure()->repeats = {{2, 2, 3}, {1, 7, 3}};
+    measure.measure()->uncertainty = 0.25;
+    measure.measure()->exact = true;
     upper.attributes.push_back(measure);
     Attribute inferred = semantic(9, "size", "small");
-    inferred.origin = "rule \"small\": height < 1, of <this>";
+    inferred.note()->origin = "rule \"small\": height < 1, of <this>";
     upper.attributes.push_back(inferred);
     Attribute descriptor;
     descriptor.id = 6;
     descriptor.name = "area";
-    descriptor.type = AttributeType::descriptor;
-    descriptor.descriptor = {{-1e-300}, false, "", "mm^2", true};
+    descriptor.value = Descriptor{{-1e-300}, false, "", "mm^2", true};
     upper.attributes.push_back(descriptor);
     descriptor.id = 7;
-    descriptor.descriptor = {{1, 2.5, -3}, true, "", "", false};
+    descriptor.value = Descriptor{{1, 2.5, -3}, true, "", "", false};
     upper.attributes.push_back(descriptor);
     descriptor.id = 8;
-    descriptor.descriptor = {{}, false, "curvature map.npy", "1/mm", false};
+    descriptor.value = Descriptor{{}, false, "curvature map.npy", "1/mm", false};
     upper.attributes.push_back(descriptor);
     upper.note = "shrank; \"see\" <report>";
     Annotation whole;

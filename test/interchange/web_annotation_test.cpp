@@ -117,10 +117,10 @@ TEST(WebAnnotation, TheSameShapeWithOtherIndicesGivesTheSameSelections) {
             EXPECT_EQ(other.point(Vertex(after.points[k])), mesh.point(Vertex(before.points[k])));
         ASSERT_EQ(after.attributes.size(), before.attributes.size());
         for (std::size_t k = 0; k < before.attributes.size(); ++k)
-            if (before.attributes[k].type == AttributeType::measure && before.attributes[k].measure.locations.empty()) {
-                EXPECT_EQ(other.point(Vertex(after.attributes[k].measure.points[0])),
-                          mesh.point(Vertex(before.attributes[k].measure.points[0])));
-                const auto &then = before.attributes[k].measure.repeats, &now = after.attributes[k].measure.repeats;
+            if (before.attributes[k].measure() != nullptr && before.attributes[k].measure()->locations.empty()) {
+                EXPECT_EQ(other.point(Vertex(after.attributes[k].measure()->points[0])),
+                          mesh.point(Vertex(before.attributes[k].measure()->points[0])));
+                const auto &then = before.attributes[k].measure()->repeats, &now = after.attributes[k].measure()->repeats;
                 ASSERT_EQ(now.size(), then.size());
                 for (std::size_t n = 0; n < then.size(); ++n)
                     for (std::size_t j = 0; j < then[n].size(); ++j)
@@ -161,7 +161,7 @@ TEST(WebAnnotation, AnnotationsOfOtherToolsAreRead) {
     ASSERT_EQ(read.set.annotations.size(), 1U);
     EXPECT_TRUE(read.set.annotations[0].all);
     EXPECT_EQ(read.set.annotations[0].tag, "vase");
-    EXPECT_EQ(read.set.annotations[0].attributes.at(0).note, "found in 1925");
+    EXPECT_EQ(read.set.annotations[0].attributes.at(0).note()->text, "found in 1925");
     EXPECT_EQ(read.placements[0].how, "whole");
     const std::string fragment =
         R"([{"type": "Annotation", "bodyValue": "text", "target": {"source": "x", "selector": {"type": "FragmentSelector", "value": "a"}}}])";

@@ -226,7 +226,7 @@ TEST(Describe, RegionsLinesPointsAndMaps) {
     EXPECT_EQ(count, quantities.size());
     store(region, quantities, "mm");
     EXPECT_EQ(region.attributes.size(), count) << "the same names are replaced";
-    EXPECT_EQ(region.attributes[0].descriptor.unit, "mm^2");
+    EXPECT_EQ(region.attributes[0].descriptor()->unit, "mm^2");
     Annotation point;
     point.type = AnnotationType::point;
     point.points = {4};
@@ -324,7 +324,7 @@ TEST(Uncertainty, PickingsOfTheSameNameBecomeOneMeasure) {
     Annotation annotation;
     const auto add = [&](int id, const std::string& name, const Measure& measure) {
         Attribute attribute;
-        attribute.id = id, attribute.name = name, attribute.type = AttributeType::measure, attribute.measure = measure;
+        attribute.id = id, attribute.name = name, attribute.value = measure;
         annotation.attributes.push_back(attribute);
     };
     add(0, "width", pins("ruler", {1, 2}));
@@ -334,7 +334,7 @@ TEST(Uncertainty, PickingsOfTheSameNameBecomeOneMeasure) {
     add(4, "width", pins("ruler", {1, 4}));
     EXPECT_EQ(merge_pickings(annotation), 2U);
     ASSERT_EQ(annotation.attributes.size(), 3U);
-    EXPECT_EQ(annotation.attributes[0].measure.repeats, (std::vector<std::vector<Index>>{{1, 3}, {1, 4}}));
+    EXPECT_EQ(annotation.attributes[0].measure()->repeats, (std::vector<std::vector<Index>>{{1, 3}, {1, 4}}));
     EXPECT_EQ(merge_pickings(annotation), 0U);
 }
 

@@ -86,7 +86,7 @@ TEST_F(MeasureCommand, TakesStoresAndRefreshes) {
     ASSERT_EQ(result.code, 0) << result.err;
     AnnotationSet set = read_annotations(out, mesh);
     ASSERT_EQ(set.find(7)->attributes.size(), 1U);
-    const Measure measure = set.find(7)->attributes[0].measure;
+    const Measure measure = *set.find(7)->attributes[0].measure();
     EXPECT_TRUE(measure.exact);
     EXPECT_EQ(measure.unit, "mm");
     EXPECT_NEAR(*measure.value, (std::sqrt(5) + std::hypot(1.5, 1)) / 2, 1e-12);
@@ -97,8 +97,8 @@ TEST_F(MeasureCommand, TakesStoresAndRefreshes) {
     result = run("refresh " + cube.string() + " --annotations " + out.string() + " --output " + last.string());
     EXPECT_EQ(result.code, 0) << result.err;
     set = read_annotations(last, mesh);
-    EXPECT_EQ(set.find(7)->attributes[0].measure.value, measure.value);
-    EXPECT_EQ(set.find(7)->attributes[0].measure.uncertainty, measure.uncertainty);
+    EXPECT_EQ(set.find(7)->attributes[0].measure()->value, measure.value);
+    EXPECT_EQ(set.find(7)->attributes[0].measure()->uncertainty, measure.uncertainty);
     // By coordinates; along a direction, the whole annotation.
     result = run("take " + cube.string() + " --tool ruler --at 0.1,0,0 --at 5,0.9,0");
     EXPECT_EQ(result.code, 1);
@@ -123,7 +123,7 @@ TEST_F(MeasureCommand, DescribesAndStores) {
     const AnnotationSet set = read_annotations(out, mesh);
     const auto value = [&](int id, const std::string& name) {
         for (const Attribute& a : set.find(id)->attributes)
-            if (a.name == name) return a.descriptor.values.front();
+            if (a.name == name) return a.descriptor()->values.front();
         return std::nan("");
     };
     EXPECT_DOUBLE_EQ(value(0, "volume"), 1);
@@ -166,7 +166,7 @@ TEST_F(MeasureCommand, AMapAndAnAxisAreAttributesWithTheirFiles) {
     const auto axis = run_command("axis " + pot.string() + " --output " + (scratch / "pot.axis.json").string() +
                                   " --annotations-out " + (scratch / "axis.ant.json").string());
     ASSERT_EQ(axis.code, 0) << axis.err;
-    EXPECT_EQ(read_annotations(scratch / "axis.ant.json", body).annotations.at(0).attributes.at(0).descriptor.file,
+    EXPECT_EQ(read_annotations(scratch / "axis.ant.json", body).annotations.at(0).attributes.at(0).descriptor()->file,
               "pot.axis.json");
 
     const AnnotationSet set = read_annotations(set_file, body);
@@ -174,9 +174,9 @@ TEST_F(MeasureCommand, AMapAndAnAxisAreAttributesWithTheirFiles) {
     ASSERT_EQ(set.annotations[0].attributes.size(), 1U);
     const Attribute& bumps = set.annotations[0].attributes[0];
     EXPECT_EQ(bumps.name, "bumpiness");
-    EXPECT_EQ(bumps.descriptor.file, "bumps.npy");
-    EXPECT_EQ(bumps.descriptor.unit, "1/mm");
-    EXPECT_EQ(bumps.descriptor.sha256, sha256_of_file(map));
+    EXPECT_EQ(bumps.descriptor()->file, "bumps.npy");
+    EXPECT_EQ(bumps.descriptor()->unit, "1/mm");
+    EXPECT_EQ(bumps.descriptor()->sha256, sha256_of_file(map));
     EXPECT_EQ(check().code, 0) << check().out;
 
     // Written again, the attribute is replaced.
@@ -187,7 +187,7 @@ TEST_F(MeasureCommand, AMapAndAnAxisAreAttributesWithTheirFiles) {
     ASSERT_EQ(remapped.code, 0) << remapped.err;
     const AnnotationSet updated = read_annotations(set_file, body);
     ASSERT_EQ(updated.annotations[0].attributes.size(), 1U);
-    EXPECT_EQ(updated.annotations[0].attributes[0].descriptor.unit, "mm");
+    EXPECT_EQ(updated.annotations[0].attributes[0].descriptor()->unit, "mm");
     EXPECT_EQ(check().code, 0) << check().out;
 
     // A changed file, one of another mesh, and none at all are defects.
@@ -196,7 +196,7 @@ TEST_F(MeasureCommand, AMapAndAnAxisAreAttributesWithTheirFiles) {
     EXPECT_NE(check().out.find("has changed since"), std::string::npos) << check().out;
     write_values(map, {1, 2, 3});
     AnnotationSet changed = updated;
-    changed.annotations[0].attributes[0].descriptor.sha256 = sha256_of_file(map);
+    changed.annotations[0].attributes[0].descriptor()->sha256 = sha256_of_file(map);
     write_annotations(set_file, {body, changed}, pot.string(), {});
     EXPECT_EQ(check().code, 3);
     EXPECT_NE(check().out.find("which has 3 numbers"), std::string::npos) << check().out;
@@ -210,7 +210,7 @@ TEST_F(MeasureCommand, AMapAndAnAxisAreAttributesWithTheirFiles) {
     const auto refined = run_command("mesh refine " + pot.string() + " " + finer.string() + " --vertices 500 --annotations " +
                                      set_file.string() + " --annotations-out " + carried.string());
     ASSERT_EQ(refined.code, 0) << refined.err;
-    EXPECT_TRUE(read_annotations(carried, read_mesh(finer).mesh).annotations.at(0).attributes.at(0).descriptor.stale);
+    EXPECT_TRUE(read_annotations(carried, read_mesh(finer).mesh).annotations.at(0).attributes.at(0).descriptor()->stale);
 }
 
 TEST_F(MeasureCommand, RejectsMapsThatCannotBecomeAttributes) {

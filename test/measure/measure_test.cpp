@@ -72,9 +72,8 @@ TEST(Measure, DirectionsOfAnyLengthAreTheSameDirection) {
         EXPECT_NEAR(evaluate(mesh, root, measure("bounding", {ends[0], ends[1]}, direction)), value, 1e-12) << length;
         AnnotationSet set;
         ensure_root(set, mesh).attributes.push_back({});
-        set.annotations[0].attributes[0].type = AttributeType::measure;
         set.annotations[0].attributes[0].name = "height";
-        set.annotations[0].attributes[0].measure = measure("bounding", {ends[0], ends[1]}, direction);
+        set.annotations[0].attributes[0].value = measure("bounding", {ends[0], ends[1]}, direction);
         set.up = direction;
         EXPECT_NO_THROW(check_annotations({mesh, set}, "set")) << length;
     }
@@ -144,26 +143,22 @@ TEST(Measure, RefreshMarksValuesThatCannotBeComputed) {
     const Mesh mesh = spheres(0, {{0, 0, 0}, {5, 0, 0}});
     AnnotationSet set;
     Annotation& root = ensure_root(set, mesh);
-    const auto add = [&](int id, AttributeType type, const std::string& name) -> Attribute& {
-        Attribute& attribute = root.attributes.emplace_back();
-        attribute.id = id, attribute.type = type, attribute.name = name;
-        return attribute;
-    };
-    root.attributes.reserve(4);
-    add(0, AttributeType::measure, "span").measure = measure("ruler", {0, 1});
-    add(1, AttributeType::measure, "way").measure = measure("tape", {0, 6});
-    add(2, AttributeType::descriptor, "area").descriptor.stale = true;
-    add(3, AttributeType::descriptor, "bumpiness").descriptor.stale = true;
-    root.attributes[0].measure.stale = true;
+    Descriptor stale_value;
+    stale_value.stale = true;
+    root.attributes = {{0, "span", measure("ruler", {0, 1})},
+                       {1, "way", measure("tape", {0, 6})},
+                       {2, "area", stale_value},
+                       {3, "bumpiness", stale_value}};
+    root.attributes[0].measure()->stale = true;
     const RefreshResult result = refresh_measures(mesh, set);
     EXPECT_EQ(result.computed, 2U);
     EXPECT_EQ(result.stale, 2U);
     EXPECT_EQ(result.notes.size(), 2U);
-    EXPECT_DOUBLE_EQ(root.attributes[0].measure.value.value(), 2);
-    EXPECT_FALSE(root.attributes[0].measure.stale);
-    EXPECT_TRUE(root.attributes[1].measure.stale);
-    EXPECT_FALSE(root.attributes[2].descriptor.stale);
-    EXPECT_TRUE(root.attributes[3].descriptor.stale);
+    EXPECT_DOUBLE_EQ(root.attributes[0].measure()->value.value(), 2);
+    EXPECT_FALSE(root.attributes[0].measure()->stale);
+    EXPECT_TRUE(root.attributes[1].measure()->stale);
+    EXPECT_FALSE(root.attributes[2].descriptor()->stale);
+    EXPECT_TRUE(root.attributes[3].descriptor()->stale);
 }
 
 TEST(Examine, DefectsAndRemarks) {
@@ -180,9 +175,8 @@ TEST(Examine, DefectsAndRemarks) {
     set.annotations[4].tag = "";
     Attribute& attribute = set.annotations[0].attributes.emplace_back();
     attribute.name = "width";
-    attribute.type = AttributeType::measure;
-    attribute.measure = measure("ruler", {0, 1});
-    attribute.measure.value = 1.5;
+    attribute.value = measure("ruler", {0, 1});
+    attribute.measure()->value = 1.5;
     std::vector<Finding> findings = examine({mesh, set});
     EXPECT_TRUE(mentions(findings, false, "2 separate patches"));
     EXPECT_TRUE(mentions(findings, false, "touch"));
@@ -193,10 +187,10 @@ TEST(Examine, DefectsAndRemarks) {
     EXPECT_TRUE(mentions(findings, true, "no poly-lines"));
     EXPECT_TRUE(mentions(findings, true, "tag is empty"));
     EXPECT_TRUE(mentions(findings, true, "is 1.5 but measures 1"));
-    attribute.measure.stale = true;
+    attribute.measure()->stale = true;
     EXPECT_TRUE(mentions(examine({mesh, set}), true, "stale"));
-    attribute.measure.stale = false;
-    attribute.measure.value.reset();
+    attribute.measure()->stale = false;
+    attribute.measure()->value.reset();
     EXPECT_TRUE(mentions(examine({mesh, set}), false, "has no value"));
     EXPECT_TRUE(examine({mesh, AnnotationSet()}).empty());
 }

@@ -82,12 +82,12 @@ struct Annotated : AnnotatedMesh {
         for (Index f = 0; f < soup.triangles.size(); ++f)
             if (soup.points[soup.triangles[f][0]][2] > 3002) upper.faces.push_back(f);
         Attribute& measure = upper.attributes.emplace_back();
-        measure.type = AttributeType::measure;
+        measure.value = Measure();
         measure.name = "width";
-        measure.measure.tool = "ruler";
-        measure.measure.points = {0, 1};
-        measure.measure.value = 14;
-        measure.measure.unit = "mm";
+        measure.measure()->tool = "ruler";
+        measure.measure()->points = {0, 1};
+        measure.measure()->value = 14;
+        measure.measure()->unit = "mm";
         Annotation& top = annotations.annotations.emplace_back();
         top.id = 9;
         top.tag = "top";

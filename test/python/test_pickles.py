@@ -275,7 +275,7 @@ def test_pickles_of_another_class_or_version_are_refused(data):
     with pytest.raises(ostraka.InputError, match="another class"):
         _objects.restored(ostraka.Mesh, state)
     with pytest.raises(ostraka.InputError, match="not an object of this version"):
-        _objects.restored(ostraka.Array, state.replace(b"ostraka object 3", b"ostraka object 4", 1))
+        _objects.restored(ostraka.Array, state.replace(b"ostraka object 4", b"ostraka object 5", 1))
     for wrong in ((int, state), (ostraka.Array, "text"), (ostraka.Array, b""), (None, None)):
         with pytest.raises(ostraka.InputError):
             _objects.restored(*wrong)

@@ -127,7 +127,8 @@ TEST(GeometricRelations, PlantedRelationsAreFoundAndFalseOnesAreNot) {
                 apply_recipe(Path(OSTRAKA_SOURCE_DIR) / "data" / (name + ".recipe.json"), object.mesh, object.face_labels);
             add_noise(object.mesh, noise, seed);
             RelationOptions options;
-            if (noise > 0.004) options.ratio = 12;  // such noise alone makes the areas of small parts differ by up to 11 %
+            if (noise > 0.004)
+                options.max_difference = 12;  // such noise alone makes the areas of small parts differ by up to 11 %
             RelationMeter meter({object.mesh, set}, options);
             for (const auto& [holds, type, members, attribute] : list) {
                 const RelationCheck check = meter.measure(stated(type, members, attribute));

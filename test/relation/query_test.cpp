@@ -39,12 +39,12 @@ protected:
         set.annotations.push_back(annotation);
     }
     void note(std::size_t at, const std::string& name, const std::string& word) {
-        set.annotations[at].attributes.push_back({free_attribute(at), name, AttributeType::semantic, word, {}, {}});
+        set.annotations[at].attributes.push_back({free_attribute(at), name, Note{word, {}}});
     }
     void measure(std::size_t at, const std::string& name, double value, const std::string& unit) {
-        Attribute attribute{free_attribute(at), name, AttributeType::descriptor, {}, {}, {}};
-        attribute.descriptor.values = {value};
-        attribute.descriptor.unit = unit;
+        Attribute attribute{free_attribute(at), name, Descriptor()};
+        attribute.descriptor()->values = {value};
+        attribute.descriptor()->unit = unit;
         set.annotations[at].attributes.push_back(attribute);
     }
     [[nodiscard]] int free_attribute(std::size_t at) const { return static_cast<int>(set.annotations[at].attributes.size()); }

@@ -393,7 +393,7 @@ TEST(Render, DeepAndFinerPicturesShowTheSame) {
     RenderOptions options;
     options.size = "200x150";
     const Picture standard = render({scene}, options).picture;
-    options.deep = true;
+    options.sixteen_bit = true;
     const DeepPicture deep = render({scene}, options).deep;
     ASSERT_EQ(deep.rgba.size(), standard.argb.size());
     std::set<int> levels;
@@ -403,7 +403,7 @@ TEST(Render, DeepAndFinerPicturesShowTheSame) {
             levels.insert(deep.rgba[i][0]);
         }
     EXPECT_GT(levels.size(), 300U) << "more than 8 bits can hold";
-    options.deep = false;
+    options.sixteen_bit = false;
     options.supersample = 3;
     double difference = 0;
     const Picture fine = render({scene}, options).picture;

@@ -95,8 +95,8 @@ TEST(Edit, EveryActionOnEveryType) {
                                      mesh, "", start_with(tile_steps, mesh));
     ASSERT_EQ(set.annotations.size(), 4U);
     EXPECT_EQ(set.find(1)->faces, faces_of(R"({"box": {"min": [1, 0, 0], "max": [3, 4, 0]}})", mesh));
-    EXPECT_DOUBLE_EQ(*set.find(1)->attributes[0].measure.value, 2) << "the width is taken anew at the new outermost vertices";
-    EXPECT_DOUBLE_EQ(set.find(1)->attributes[1].descriptor.values.at(0), 8);
+    EXPECT_DOUBLE_EQ(*set.find(1)->attributes[0].measure()->value, 2) << "the width is taken anew at the new outermost vertices";
+    EXPECT_DOUBLE_EQ(set.find(1)->attributes[1].descriptor()->values.at(0), 8);
     EXPECT_EQ(set.find(2)->polylines, (std::vector<std::vector<Index>>{{12, 11, 10, 5, 0, 1, 2}, {20, 21}}));
     EXPECT_EQ(set.find(3)->points, (std::vector<Index>{7, 9, 24}));
     EXPECT_EQ(set.find(3)->tag, "dots");
@@ -111,7 +111,7 @@ TEST(Edit, EveryActionOnEveryType) {
                                        mesh, "", start_with(tile_steps, mesh));
     ASSERT_EQ(again.annotations.size(), 2U);
     EXPECT_EQ(again.find(1)->faces, std::vector<Index>{0});
-    EXPECT_EQ(again.find(1)->attributes.at(1).note, "clay") << "an attribute of the same id takes the old one's place";
+    EXPECT_EQ(again.find(1)->attributes.at(1).note()->text, "clay") << "an attribute of the same id takes the old one's place";
     EXPECT_EQ(again.find(3)->points, std::vector<Index>{24});
 }
 
@@ -122,16 +122,16 @@ TEST(Edit, OtherAnnotationsAreUnchanged) {
     Attribute height;
     height.id = 9;
     height.name = "height";
-    height.type = AttributeType::descriptor;
-    height.descriptor.values = {7};
-    height.descriptor.stale = true;
+    height.value = Descriptor();
+    height.descriptor()->values = {7};
+    height.descriptor()->stale = true;
     start.annotations.annotations[0].attributes.push_back(height);
     const AnnotationSet set =
         follow(R"({"id": 4, "tag": "spot", "type": "point", "select": {"vertices": [0]}})", mesh, "", std::move(start));
     ASSERT_EQ(set.annotations.size(), 4U);
     ASSERT_EQ(set.find(1)->attributes.size(), 3U);
-    EXPECT_EQ(set.find(1)->attributes[2].descriptor.values, std::vector<double>{7});
-    EXPECT_TRUE(set.find(1)->attributes[2].descriptor.stale);
+    EXPECT_EQ(set.find(1)->attributes[2].descriptor()->values, std::vector<double>{7});
+    EXPECT_TRUE(set.find(1)->attributes[2].descriptor()->stale);
 }
 
 TEST(Edit, AddingAndRemovingUndoEachOther) {

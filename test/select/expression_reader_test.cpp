@@ -261,7 +261,7 @@ TEST(RecipeReader, ReadsStepsWithTheirFrames) {
     EXPECT_EQ(added.action, StepAction::add_to);
     EXPECT_TRUE(std::get<selection::NearestVertex>(added.select->kind).position.frame.box);
     ASSERT_EQ(added.attributes->size(), 1U);
-    EXPECT_EQ(added.attributes->at(0).attribute.measure.tool, "ruler");
+    EXPECT_EQ(added.attributes->at(0).attribute.measure()->tool, "ruler");
     EXPECT_EQ(added.attributes->at(0).pins.at(1).at, "/annotations/2/attributes/0/measure/points/1");
 }
 

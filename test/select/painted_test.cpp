@@ -137,7 +137,7 @@ TEST(ColourEdges, NoneOnOneColourAndErrors) {
     EXPECT_TRUE(find_colour_edges(file.mesh, file.extras, {}, "grey").empty());
     EXPECT_THROW(find_colour_edges(file.mesh, {}, {}, "bare"), Error);
     ColourEdgeOptions options;
-    options.faint = 20;
+    options.min_contrast = 20;
     EXPECT_THROW(find_colour_edges(file.mesh, file.extras, options, "grey"), Error);
 }
 

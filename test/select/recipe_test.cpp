@@ -168,13 +168,13 @@ TEST(Recipe, MeasuresAndDescriptorsAreComputed) {
     EXPECT_TRUE(set.annotations[0].all) << "the class stands for the whole object";
     EXPECT_EQ(set.annotations[0].tag, "tile");
     const auto& attributes = set.annotations[1].attributes;
-    EXPECT_EQ(attributes[0].note, "red");
-    EXPECT_DOUBLE_EQ(attributes[1].measure.value.value(), 5);
-    EXPECT_DOUBLE_EQ(attributes[2].measure.value.value(), 5);
-    EXPECT_DOUBLE_EQ(attributes[3].measure.value.value(), 3);
-    EXPECT_EQ(attributes[3].measure.unit, "mm");
-    EXPECT_DOUBLE_EQ(attributes[4].descriptor.values.at(0), 6);
-    EXPECT_EQ(attributes[4].descriptor.unit, "mm^2");
+    EXPECT_EQ(attributes[0].note()->text, "red");
+    EXPECT_DOUBLE_EQ(attributes[1].measure()->value.value(), 5);
+    EXPECT_DOUBLE_EQ(attributes[2].measure()->value.value(), 5);
+    EXPECT_DOUBLE_EQ(attributes[3].measure()->value.value(), 3);
+    EXPECT_EQ(attributes[3].measure()->unit, "mm");
+    EXPECT_DOUBLE_EQ(attributes[4].descriptor()->values.at(0), 6);
+    EXPECT_EQ(attributes[4].descriptor()->unit, "mm^2");
     // Written, read and written again: the same bytes; followed again: the same bytes.
     const std::string text = to_text(annotations_to_json({mesh, set}, "m", {}));
     EXPECT_EQ(to_text(annotations_to_json({mesh, annotations_from_json(parse_json(text, "t"), mesh, "t")}, "m", {})), text);
@@ -300,5 +300,5 @@ TEST(Recipe, TheLionHeadIsAnnotatedOnItsPictures) {
         EXPECT_EQ(summarise(mesh, *set.find(id)).patches, 1U) << set.find(id)->tag;
     EXPECT_NEAR(area(6) / area(7), 1, 0.2) << "the eyes";
     EXPECT_NEAR(area(3) / area(4), 1, 0.3) << "the ears";
-    EXPECT_NEAR(*set.find(6)->attributes.at(0).measure.value / *set.find(7)->attributes.at(0).measure.value, 1, 0.2);
+    EXPECT_NEAR(*set.find(6)->attributes.at(0).measure()->value / *set.find(7)->attributes.at(0).measure()->value, 1, 0.2);
 }

@@ -114,10 +114,10 @@ struct Bench : AnnotatedMesh {
     void add_height(int id) {
         Attribute height;
         height.name = "height";
-        height.type = AttributeType::measure;
-        height.measure.tool = "bounding";
-        height.measure.points = {first[id], first[id] + (levels - 1) * around};
-        height.measure.direction = {0, 0, 1};
+        height.value = Measure();
+        height.measure()->tool = "bounding";
+        height.measure()->points = {first[id], first[id] + (levels - 1) * around};
+        height.measure()->direction = {0, 0, 1};
         for (Annotation& annotation : annotations.annotations)
             if (annotation.id == id) annotation.attributes.push_back(height);
     }

@@ -23,11 +23,11 @@ struct Hand {
             Attribute length;
             length.id = 50;
             length.name = "length";
-            length.type = AttributeType::measure;
-            length.measure.tool = "bounding";
-            length.measure.direction = {0, 0, 1};
+            length.value = Measure();
+            length.measure()->tool = "bounding";
+            length.measure()->direction = {0, 0, 1};
             const auto ends = extremes(synthetic.mesh, annotation, {0, 0, 1});
-            length.measure.points.assign(ends.begin(), ends.end());
+            length.measure()->points.assign(ends.begin(), ends.end());
             annotation.attributes.push_back(length);
         }
     }
@@ -368,12 +368,12 @@ TEST(Deform, MeasuresAreKeptAndEqualised) {
     Attribute attribute;
     attribute.id = 51;
     attribute.name = "way";
-    attribute.type = AttributeType::measure;
-    attribute.measure.tool = "tape";
+    attribute.value = Measure();
+    attribute.measure()->tool = "tape";
     const auto ends = extremes(tape.synthetic.mesh, finger, {0, 0, 1});
-    attribute.measure.points.assign(ends.begin(), ends.end());
+    attribute.measure()->points.assign(ends.begin(), ends.end());
     finger.attributes.push_back(attribute);
-    const double way = evaluate(tape.synthetic.mesh, finger, attribute.measure);
+    const double way = evaluate(tape.synthetic.mesh, finger, *attribute.measure());
     graph.relationships[0] = constraint(0, "keep measure", {6},
                                         R"({"measure": "way", "hard": true, "minValue": )" + std::to_string(1.1 * way) +
                                             R"(, "maxValue": )" + std::to_string(1.2 * way) + "}");
@@ -480,7 +480,7 @@ TEST(Deform, APartBetweenOthersIsMovedOnAllSides) {
     };
     double width = 0;
     for (const Attribute& attribute : hand.set.find(1)->attributes)
-        if (attribute.name == "width") width = evaluate(hand.synthetic.mesh, *hand.set.find(1), attribute.measure);
+        if (attribute.name == "width") width = evaluate(hand.synthetic.mesh, *hand.set.find(1), *attribute.measure());
     ASSERT_GT(width, 0);
     RelationGraph graph;
     graph.relationships.push_back(constraint(0, "keep measure", {1},

@@ -144,7 +144,7 @@ TEST(DeformVerdict, AnExtentIsMeasuredOnTheResult) {
     refresh_measures(now, set);
     for (const Attribute& attribute : set.find(finger.id)->attributes)
         if (attribute.name == "reach") {
-            EXPECT_NEAR(*attribute.measure.value, measured, 1e-9 * measured);
+            EXPECT_NEAR(*attribute.measure()->value, measured, 1e-9 * measured);
         }
 }
 

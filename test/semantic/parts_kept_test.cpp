@@ -107,11 +107,11 @@ void measure_heights(Column& column) {
         Attribute height;
         height.id = 1;
         height.name = "height";
-        height.type = AttributeType::measure;
-        height.measure.tool = "bounding";
-        height.measure.direction = {0, 0, 1};
+        height.value = Measure();
+        height.measure()->tool = "bounding";
+        height.measure()->direction = {0, 0, 1};
         const auto ends = extremes(column.mesh, *column.annotations.find(id), {0, 0, 1});
-        height.measure.points.assign(ends.begin(), ends.end());
+        height.measure()->points.assign(ends.begin(), ends.end());
         column.annotations.find(id)->attributes.push_back(height);
     }
 }

@@ -87,7 +87,7 @@ TEST_F(ClassCommand, AFitUsesShapeAndThresholdsOfItsClassOnly) {
     const ShapeClass read = read_class(learnt);
     std::size_t by_class = 0;
     for (const FragmentThreshold& threshold : fragment_thresholds(read)) {
-        if (threshold.option == "slack") continue;  // never below the default
+        if (threshold.option == "min-tolerance") continue;  // never below the default
         ++by_class;
         EXPECT_EQ(threshold.members, 3U);
         EXPECT_EQ(origin_of(assembly, threshold.option), "class");
@@ -98,7 +98,7 @@ TEST_F(ClassCommand, AFitUsesShapeAndThresholdsOfItsClassOnly) {
     const auto specified = run_command(fit + " --residual 0.4 --class " + quoted(learnt));
     ASSERT_TRUE(specified.code == 0 || specified.code == 3) << specified.err;
     assembly = read_json(scratch / "fitted" / "fit.assembly.json");
-    EXPECT_EQ(origin_of(assembly, "residual"), "told");
+    EXPECT_EQ(origin_of(assembly, "residual"), "option");
     EXPECT_EQ(assembly["thresholds"][0]["value"].GetDouble(), 0.4);
 
     // A class of another template: other vertices, or the same number joined otherwise.

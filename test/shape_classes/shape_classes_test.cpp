@@ -391,9 +391,9 @@ TEST(ClassSample, SatisfiesTheConstraintsAndTheRanges) {
     for (const ClassSample& sample : sampling.samples) {
         const Mesh mesh = with_points(template_tower.mesh, sample.points);
         const double top = evaluate(mesh, template_tower.annotations.annotations[1],
-                                    template_tower.annotations.annotations[1].attributes[0].measure);
+                                    *template_tower.annotations.annotations[1].attributes[0].measure());
         const double base = evaluate(mesh, template_tower.annotations.annotations[0],
-                                     template_tower.annotations.annotations[0].attributes[0].measure);
+                                     *template_tower.annotations.annotations[0].attributes[0].measure());
         EXPECT_GE(top / base, *ratio->low);
         EXPECT_LE(top / base, *ratio->high);
         WholeObject object{{mesh, {}}, "sample"};
@@ -418,9 +418,9 @@ TEST(ClassSample, RestoresAStatedProportionOrRejects) {
     for (const ClassSample& sample : sampling.samples) {
         const Mesh mesh = with_points(template_tower.mesh, in_template_frame(template_tower.mesh, sample.points, false));
         const double top = evaluate(mesh, template_tower.annotations.annotations[1],
-                                    template_tower.annotations.annotations[1].attributes[0].measure);
+                                    *template_tower.annotations.annotations[1].attributes[0].measure());
         const double base = evaluate(mesh, template_tower.annotations.annotations[0],
-                                     template_tower.annotations.annotations[0].attributes[0].measure);
+                                     *template_tower.annotations.annotations[0].attributes[0].measure());
         EXPECT_LE(top / base, 1.02 * 1.001 + 1e-3);
     }
     EXPECT_EQ(sampling.tried, sampling.samples.size() + sampling.by_constraints + sampling.by_ranges + sampling.by_intersections);

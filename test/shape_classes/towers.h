@@ -28,16 +28,16 @@ inline Annotation half(const Mesh& mesh, int id, const std::string& tag, bool up
         if ((centroid(mesh, face).z() > 0.5) == upper) annotation.faces.push_back(face.idx());
     Attribute height;
     height.name = "height";
-    height.type = AttributeType::measure;
-    height.measure.tool = "bounding";
-    height.measure.direction = {0, 0, 1};
+    height.value = Measure();
+    height.measure()->tool = "bounding";
+    height.measure()->direction = {0, 0, 1};
     Index low = no_index, top = no_index;
     for (const Index v : touched_vertices(mesh, annotation)) {
         const double z = mesh.point(Vertex(v)).z();
         if (low == no_index || z < mesh.point(Vertex(low)).z()) low = v;
         if (top == no_index || z > mesh.point(Vertex(top)).z()) top = v;
     }
-    height.measure.points = {low, top};
+    height.measure()->points = {low, top};
     annotation.attributes.push_back(height);
     return annotation;
 }

@@ -241,8 +241,8 @@ TEST(Template, PartsStayInItsFolder) {
     for (const std::string& name : {std::string("../secret.npy"), ball.at("cage.ply"), std::string("cage.ply")}) {
         set.annotations[0].attributes.resize(1);
         set.annotations[0].attributes[0].name = "map";
-        set.annotations[0].attributes[0].type = AttributeType::descriptor;
-        set.annotations[0].attributes[0].descriptor.file = name;
+        set.annotations[0].attributes[0].value = Descriptor();
+        set.annotations[0].attributes[0].descriptor()->file = name;
         write_annotations(ball / "o.ant.json", {ball.mesh, set}, "ball.ply", {});
         write_file(ball / "o.template.json",
                    R"({"format": "ostraka-template", "version": 1, "mesh": "ball.ply", "annotations": "o.ant.json"})");

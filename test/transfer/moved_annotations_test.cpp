@@ -20,10 +20,10 @@ Attribute descriptor(int id, const std::string& name, std::vector<double> values
     Attribute attribute;
     attribute.id = id;
     attribute.name = name;
-    attribute.type = AttributeType::descriptor;
-    attribute.descriptor.values = std::move(values);
-    attribute.descriptor.unit = unit;
-    attribute.descriptor.file = file;
+    attribute.value = Descriptor();
+    attribute.descriptor()->values = std::move(values);
+    attribute.descriptor()->unit = unit;
+    attribute.descriptor()->file = file;
     return attribute;
 }
 
@@ -83,11 +83,11 @@ TEST(MovedAnnotations, FreeCurvesAndPinsStayInPlaceOnAMirroredMesh) {
         compute_elements(mesh, elements);
         EXPECT_EQ(elements.faces, before.faces) << "the interior is to the left";
         refresh_measures(mesh, set);
-        EXPECT_NEAR(*set.annotations[0].attributes[0].measure.value / (10 * *before.attributes[0].measure.value), 1, 1e-13);
+        EXPECT_NEAR(*set.annotations[0].attributes[0].measure()->value / (10 * *before.attributes[0].measure()->value), 1, 1e-13);
         const Eigen::Vector3d up = rotation.col(2), side = rotation.col(0);
         for (int k = 0; k < 3; ++k) {
             EXPECT_EQ((*set.up)[k], up[k]);
-            EXPECT_EQ((*set.annotations[0].attributes[0].measure.direction)[k], side[k]);
+            EXPECT_EQ((*set.annotations[0].attributes[0].measure()->direction)[k], side[k]);
         }
     }
 }
@@ -111,24 +111,24 @@ TEST(MovedAnnotations, StatisticsAreScaledAndFilesThatNoLongerFitAreStale) {
     const Eigen::Matrix3d none = Eigen::Matrix3d::Identity();
     const auto same = moved({none, {1, 0, 0}, 1}, "mm"), metres = moved({none, {0, 0, 0}, 0.001}, "m"),
                larger = moved({none, {0, 0, 0}, 2}, "mm"), still = moved({}, "mm");
-    EXPECT_NEAR(metres[0].descriptor.values[0], 0.002, 1e-18);
-    EXPECT_NEAR(metres[1].descriptor.values[0], 2000, 1e-9);
-    EXPECT_EQ(metres[1].descriptor.unit, "1/m");
-    EXPECT_NEAR(metres[2].descriptor.values[0], 2e6, 1e-6);
-    EXPECT_EQ(metres[8].descriptor.unit, "m^2");
-    EXPECT_EQ(larger[0].descriptor.values[0], 4);
-    EXPECT_EQ(larger[1].descriptor.values[0], 1);
-    EXPECT_EQ(larger[2].descriptor.values[0], 0.5);
+    EXPECT_NEAR(metres[0].descriptor()->values[0], 0.002, 1e-18);
+    EXPECT_NEAR(metres[1].descriptor()->values[0], 2000, 1e-9);
+    EXPECT_EQ(metres[1].descriptor()->unit, "1/m");
+    EXPECT_NEAR(metres[2].descriptor()->values[0], 2e6, 1e-6);
+    EXPECT_EQ(metres[8].descriptor()->unit, "m^2");
+    EXPECT_EQ(larger[0].descriptor()->values[0], 4);
+    EXPECT_EQ(larger[1].descriptor()->values[0], 1);
+    EXPECT_EQ(larger[2].descriptor()->values[0], 0.5);
     for (const auto* list : {&same, &metres, &larger}) {
-        EXPECT_EQ((*list)[3].descriptor.values[0], 2);
-        EXPECT_EQ((*list)[3].descriptor.unit, "g");
-        EXPECT_EQ((*list)[4].descriptor.values[0], 2) << "a statement in its own unit";
-        EXPECT_EQ((*list)[4].descriptor.unit, "cm");
-        EXPECT_FALSE((*list)[6].descriptor.stale);
-        EXPECT_TRUE((*list)[7].descriptor.stale) << "an axis has a place";
+        EXPECT_EQ((*list)[3].descriptor()->values[0], 2);
+        EXPECT_EQ((*list)[3].descriptor()->unit, "g");
+        EXPECT_EQ((*list)[4].descriptor()->values[0], 2) << "a statement in its own unit";
+        EXPECT_EQ((*list)[4].descriptor()->unit, "cm");
+        EXPECT_FALSE((*list)[6].descriptor()->stale);
+        EXPECT_TRUE((*list)[7].descriptor()->stale) << "an axis has a place";
     }
-    EXPECT_FALSE(same[5].descriptor.stale);
-    EXPECT_FALSE(metres[5].descriptor.stale) << "millimetres, as the attribute states";
-    EXPECT_TRUE(larger[5].descriptor.stale);
-    EXPECT_FALSE(still[7].descriptor.stale);
+    EXPECT_FALSE(same[5].descriptor()->stale);
+    EXPECT_FALSE(metres[5].descriptor()->stale) << "millimetres, as the attribute states";
+    EXPECT_TRUE(larger[5].descriptor()->stale);
+    EXPECT_FALSE(still[7].descriptor()->stale);
 }

@@ -78,8 +78,7 @@ TEST_F(TransferCommand, RegistersMeshesWithOtherUnitsAndPoses) {
     for (const Face f : hand.mesh.faces())
         if (centroid(hand.mesh, f).z() > 100) part.faces.push_back(f);
     ASSERT_FALSE(part.faces.empty());
-    part.attributes.push_back(
-        {0, "area", AttributeType::descriptor, {}, {}, {{area_of(hand.mesh, part.faces)}, false, {}, "mm^2", false}});
+    part.attributes.push_back({0, "area", Descriptor{{area_of(hand.mesh, part.faces)}, false, {}, "mm^2", false}});
     set.annotations.push_back(part);
     write_mesh(scratch / "s.ply", hand.mesh);
     write_mesh(scratch / "t.ply", target);
@@ -95,13 +94,13 @@ TEST_F(TransferCommand, RegistersMeshesWithOtherUnitsAndPoses) {
     EXPECT_EQ(transferred.unit, "m");
     ASSERT_TRUE(transferred.up);
     EXPECT_NEAR((*transferred.up)[1], 1, 1e-3);
-    const Descriptor& area = transferred.annotations[0].attributes[0].descriptor;
+    const Descriptor& area = *transferred.annotations[0].attributes[0].descriptor();
     EXPECT_EQ(area.unit, "m^2");
     EXPECT_NEAR(area.values[0], area_of(target, transferred.annotations[0].faces), 1e-12);
     EXPECT_EQ(back.unit, "mm");
     EXPECT_NEAR((*back.up)[2], 1, 1e-9);
-    EXPECT_EQ(back.annotations[0].attributes[0].descriptor.unit, "mm^2");
-    EXPECT_NEAR(back.annotations[0].attributes[0].descriptor.values[0], area_of(hand.mesh, part.faces),
+    EXPECT_EQ(back.annotations[0].attributes[0].descriptor()->unit, "mm^2");
+    EXPECT_NEAR(back.annotations[0].attributes[0].descriptor()->values[0], area_of(hand.mesh, part.faces),
                 0.02 * area_of(hand.mesh, part.faces));
     // Another object is no target.
     options.vertices = 3000;

@@ -181,20 +181,20 @@ TEST(Transfer, ShortLinesBecomePointsAndLostPinsLeaveAStaleValue) {
     Annotation cap_region = region(1, two_balls, [](const Point& p) { return p.z() > 0.6 && p.x() < 2; });
     Attribute ruler;
     ruler.name = "width";
-    ruler.type = AttributeType::measure;
-    ruler.measure.tool = "ruler";
-    ruler.measure.points = {static_cast<Index>(two_balls.number_of_vertices() - 1), 4};
-    ruler.measure.value = 1.5;
-    ruler.measure.unit = "mm";
+    ruler.value = Measure();
+    ruler.measure()->tool = "ruler";
+    ruler.measure()->points = {static_cast<Index>(two_balls.number_of_vertices() - 1), 4};
+    ruler.measure()->value = 1.5;
+    ruler.measure()->unit = "mm";
     cap_region.attributes = {ruler};
     TransferOptions force;
     force.force = true;
     const auto carried = transfer_to({two_balls, set_of({cap_region})}, single_ball, force).annotations.annotations;
     ASSERT_EQ(carried.size(), 1U);
     ASSERT_EQ(carried[0].attributes.size(), 1U);
-    EXPECT_EQ(carried[0].attributes[0].type, AttributeType::descriptor);
-    EXPECT_TRUE(carried[0].attributes[0].descriptor.stale);
-    EXPECT_EQ(carried[0].attributes[0].descriptor.values, std::vector<double>{1.5});
+    EXPECT_NE(carried[0].attributes[0].descriptor(), nullptr);
+    EXPECT_TRUE(carried[0].attributes[0].descriptor()->stale);
+    EXPECT_EQ(carried[0].attributes[0].descriptor()->values, std::vector<double>{1.5});
 }
 
 TEST(Transfer, RegionWhoseSmallHoleVanishesCoversItsComponent) {
@@ -343,23 +343,23 @@ TEST(Transfer, MeasuresMoveWithTheirPinsAndAreRecomputed) {
     Annotation top = region(1, source, cap);
     Attribute ruler;
     ruler.name = "axis";
-    ruler.type = AttributeType::measure;
-    ruler.measure.tool = "ruler";
-    ruler.measure.points = {4, 5};  // the poles
-    ruler.measure.value = 99.0;
-    ruler.measure.unit = "mm";
+    ruler.value = Measure();
+    ruler.measure()->tool = "ruler";
+    ruler.measure()->points = {4, 5};  // the poles
+    ruler.measure()->value = 99.0;
+    ruler.measure()->unit = "mm";
     Attribute area;
     area.id = 1;
     area.name = "area";
-    area.type = AttributeType::descriptor;
-    area.descriptor.values = {99.0};
+    area.value = Descriptor();
+    area.descriptor()->values = {99.0};
     top.attributes = {ruler, area};
     const Annotation moved = transfer_to({source, set_of({top})}, target).annotations.annotations.at(0);
     ASSERT_EQ(moved.attributes.size(), 2U);
-    EXPECT_FALSE(moved.attributes[0].measure.stale);
-    EXPECT_NEAR(moved.attributes[0].measure.value.value(), 2, 1e-9);
-    EXPECT_EQ(moved.attributes[0].measure.locations.size(), 2U);
-    EXPECT_NEAR(moved.attributes[1].descriptor.values.at(0), measure_region(target, moved.faces).area, 1e-12);
+    EXPECT_FALSE(moved.attributes[0].measure()->stale);
+    EXPECT_NEAR(moved.attributes[0].measure()->value.value(), 2, 1e-9);
+    EXPECT_EQ(moved.attributes[0].measure()->locations.size(), 2U);
+    EXPECT_NEAR(moved.attributes[1].descriptor()->values.at(0), measure_region(target, moved.faces).area, 1e-12);
 }
 
 TEST(Survival, SmallerRegionsNeedMoreVertices) {

@@ -85,15 +85,15 @@ TEST(ClassRules, Counts) {
 TEST(ClassRules, Attributes) {
     auto annotations = good();
     annotations[0].attributes.clear();
-    annotations[1].attributes[0].descriptor.values = {25};
-    annotations[3].attributes[0].note = "bronze";
+    annotations[1].attributes[0].descriptor()->values = {25};
+    annotations[3].attributes[0].note()->text = "bronze";
     EXPECT_EQ(broken(set_of(annotations), on_head),
               (std::vector<std::string>{"material: 'head' (id 0) has no attribute 'material'",
                                         "material: the 'material' of 'nose' (id 3) is 'bronze', but must be 'clay' or 'Marmor'",
                                         "eyes are small: the 'height' of 'left eye' (id 1) is 25 mm, but must be 2 cm or less"}));
     annotations = good();
-    annotations[3].attributes[0].note = "marmo";  // the same word in another language
-    annotations[1].attributes[0].descriptor.stale = true;
+    annotations[3].attributes[0].note()->text = "marmo";  // the same word in another language
+    annotations[1].attributes[0].descriptor()->stale = true;
     EXPECT_EQ(
         broken(set_of(annotations), on_head),
         std::vector<std::string>{"eyes are small: the 'height' of 'left eye' (id 1) is 15 mm (stale), but must be 2 cm or less"});

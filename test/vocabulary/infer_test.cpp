@@ -23,7 +23,7 @@ bool holds(const std::string& text, const std::string& part) { return text.find(
 std::string split_words(const AnnotationSet& set, int id) {
     std::string text;
     for (const Attribute& attribute : set.find(id)->attributes)
-        if (attribute.type == AttributeType::semantic) text += (text.empty() ? "" : " ") + attribute.name + "=" + attribute.note;
+        if (attribute.note() != nullptr) text += (text.empty() ? "" : " ") + attribute.name + "=" + attribute.note()->text;
     return text;
 }
 
@@ -35,7 +35,7 @@ TEST(Infer, ARuleThatHoldsInfersItsValueWithAReason) {
     const InferenceResult result = infer(set_of({point(0, "whiskers", {length("bumpiness", 0.05, "1/mm")})}), busts());
     EXPECT_EQ(split_words(result.annotations, 0), "beard style=straight");
     const Attribute& attribute = result.annotations.annotations[0].attributes.back();
-    EXPECT_EQ(attribute.origin, "rule 'smooth': bumpiness 0.05 1/mm < 0.1 1/mm");
+    EXPECT_EQ(attribute.note()->origin, "rule 'smooth': bumpiness 0.05 1/mm < 0.1 1/mm");
     EXPECT_EQ(attribute.id, 1);
     ASSERT_EQ(result.inferred.size(), 1U);
     EXPECT_EQ(result.inferred[0].rule, "smooth");
@@ -97,8 +97,8 @@ TEST(Infer, RatiosAcrossAnnotations) {
     EXPECT_TRUE(holds(missing({point(1, "eye", {word("height", "tall")})}), "is a word"));
     EXPECT_TRUE(holds(missing({point(1, "eye", {length("height", 1), length("HEIGHT", 2)})}), "more than one"));
     Attribute stale = length("height", 10), list = length("height", 10);
-    stale.descriptor.stale = true;
-    list.descriptor.values = {1, 2};
+    stale.descriptor()->stale = true;
+    list.descriptor()->values = {1, 2};
     EXPECT_TRUE(holds(missing({point(1, "eye", {stale})}), "is stale"));
     EXPECT_TRUE(holds(missing({point(1, "eye", {list})}), "a list of numbers"));
 }

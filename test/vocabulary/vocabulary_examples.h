@@ -35,16 +35,16 @@ inline Vocabulary busts() { return vocabulary_from_json(parse_json(bust_vocabula
 inline Attribute word(const std::string& name, const std::string& value) {
     Attribute attribute;
     attribute.name = name;
-    attribute.note = value;
+    attribute.value = Note{value, {}};
     return attribute;
 }
 
 inline Attribute quantity(const std::string& name, double value, const std::string& unit) {
     Attribute attribute;
     attribute.name = name;
-    attribute.type = AttributeType::descriptor;
-    attribute.descriptor.values = {value};
-    attribute.descriptor.unit = unit;
+    attribute.value = Descriptor();
+    attribute.descriptor()->values = {value};
+    attribute.descriptor()->unit = unit;
     return attribute;
 }
 

@@ -222,11 +222,11 @@ TEST(CheckAgainstVocabulary, Quantities) {
     EXPECT_TRUE(holds(only_defect(point(0, "eye", {quantity("height", 2.5, "mm^2")})), "cannot be converted"));
     EXPECT_TRUE(holds(only_defect(point(0, "beard", {quantity("bumpiness", -1, "1/mm")})), "0 1/mm or more"));
     Attribute list = quantity("height", 5, "mm");
-    list.descriptor.values = {5, 6, 77};
+    list.descriptor()->values = {5, 6, 77};
     EXPECT_TRUE(holds(only_defect(point(0, "eye", {list})), "77"));
     // Values that cannot be checked give remarks.
     Attribute stale = quantity("height", 999, "mm");
-    stale.descriptor.stale = true;
+    stale.descriptor()->stale = true;
     const AnnotationSet doubtful = set_of({point(0, "eye", {stale, quantity("height", 999, ""), quantity("roundness", 1, "")})});
     EXPECT_TRUE(defects(doubtful).empty());
     EXPECT_EQ(check_against_vocabulary(doubtful, busts()).size(), 3U);
@@ -236,11 +236,11 @@ TEST(CheckAgainstVocabulary, Quantities) {
 TEST(CheckAgainstVocabulary, RangesApplyToMeasures) {
     Attribute measure;
     measure.name = "height";
-    measure.type = AttributeType::measure;
-    measure.measure.unit = "mm";
-    measure.measure.value = 25;
+    measure.value = Measure();
+    measure.measure()->unit = "mm";
+    measure.measure()->value = 25;
     EXPECT_TRUE(holds(only_defect(point(0, "eye", {measure})), "25 mm, outside"));
-    measure.measure.value.reset();
+    measure.measure()->value.reset();
     EXPECT_TRUE(defects(set_of({point(0, "eye", {measure})})).empty());
     try {
         require_vocabulary(set_of({point(7, "ey"), point(8, "ee")}), busts(), "r.json");

@@ -8,6 +8,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace ostraka {
@@ -45,18 +46,25 @@ struct Descriptor {
     bool operator==(const Descriptor&) const = default;
 };
 
-/// How the value of an attribute is given.
-enum class AttributeType { semantic, measure, descriptor };
+/// The text of a semantic attribute.
+struct Note {
+    std::string text;    ///< the statement, in words
+    std::string origin;  ///< derivation of an inferred statement, e.g. the rule and its inputs; empty: a person's statement
+    bool operator==(const Note&) const = default;
+};
 
-/// A named attribute of an annotation.
+/// A named attribute of an annotation. Its value is a text (semantic attribute), a measure or a descriptor.
 struct Attribute {
-    int id = 0;        ///< unique among the attributes of the annotation
-    std::string name;  ///< name of the attribute
-    AttributeType type = AttributeType::semantic;
-    std::string note;       ///< text of a semantic attribute; empty for the other types
-    Measure measure;        ///< used if `type` is measure
-    Descriptor descriptor;  ///< used if `type` is descriptor
-    std::string origin{};   ///< derivation of an inferred semantic attribute, e.g. the rule and its inputs
+    int id = 0;                                     ///< unique among the attributes of the annotation
+    std::string name;                               ///< name of the attribute
+    std::variant<Note, Measure, Descriptor> value;  ///< the value; its alternative is the type of the attribute
+
+    [[nodiscard]] const Note* note() const { return std::get_if<Note>(&value); }                    ///< null if not semantic
+    [[nodiscard]] Note* note() { return std::get_if<Note>(&value); }                                ///< null if not semantic
+    [[nodiscard]] const Measure* measure() const { return std::get_if<Measure>(&value); }           ///< null if not a measure
+    [[nodiscard]] Measure* measure() { return std::get_if<Measure>(&value); }                       ///< null if not a measure
+    [[nodiscard]] const Descriptor* descriptor() const { return std::get_if<Descriptor>(&value); }  ///< null if no descriptor
+    [[nodiscard]] Descriptor* descriptor() { return std::get_if<Descriptor>(&value); }              ///< null if no descriptor
 };
 
 /// Additional information of an annotation (section 2.2.1): a text, a link or a file, with a checksum if the file is local.
@@ -138,6 +146,8 @@ std::vector<Index> touched_vertices(const Mesh& mesh, const Annotation& annotati
 
 /// The vertices that a measure refers to: its pins, and the pins of its repeated pickings.
 std::vector<Index> pins_of(const Measure& measure);
+/// The pins of the attribute's measure; empty if the attribute is not a measure.
+std::vector<Index> pins_of(const Attribute& attribute);
 
 /// Values of a measure or descriptor attribute; empty for a semantic attribute.
 struct Figures {

@@ -25,8 +25,8 @@ struct CatalogueStyle {
         right
     } section = Section::automatic;                         ///< side of the section; automatic: by convention
     enum class Paper { a4, a3, letter } paper = Paper::a4;  ///< size of the pages, upright
-    bool sheet = false;  ///< several objects a page, all at one scale, instead of one page for each
-    std::string title;   ///< title of the catalogue
+    bool several_per_page = false;  ///< several objects a page, all at one scale, instead of one page for each
+    std::string title;              ///< title of the catalogue
 
     void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
     /// True if drawings have the section on the right.

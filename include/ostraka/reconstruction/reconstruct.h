@@ -28,7 +28,7 @@ struct ReconstructOptions {
     CompleteOptions completion;          ///< the tolerance of the completion is replaced by `observed`
     double observed = 0.02;       ///< max distance of an observed vertex from its match, as a share of the template's diagonal
     double scale_tolerance = 10;  ///< max deviation of a fragment's own scale from the common scale, per cent
-    double slack = 3;             ///< a proportion or measure may deviate from its allowed range by this many per cent
+    double min_tolerance = 3;     ///< a proportion or measure may deviate from its allowed range by this many per cent
     /// Max residual of a fragment's landmarks, as a share of the landmarks' spread; a fragment with a larger residual is
     /// rejected.
     double residual = 0.25;

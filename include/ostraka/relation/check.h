@@ -9,10 +9,10 @@ namespace ostraka {
 
 /// Default tolerances, for relationships that do not state a tolerance.
 struct RelationOptions {
-    double distance = 0.01;  ///< tolerance of distances and heights, as a share of the mesh's diagonal
-    double angle = 5;        ///< tolerance of angles between axes, degrees
-    double tilt = 20;        ///< tolerance of the tilt of a contact, degrees
-    double ratio = 10;       ///< tolerance of the relative difference of areas, shapes and attribute values, per cent
+    double distance = 0.01;      ///< tolerance of distances and heights, as a share of the mesh's diagonal
+    double angle = 5;            ///< tolerance of angles between axes, degrees
+    double tilt = 20;            ///< tolerance of the tilt of a contact, degrees
+    double max_difference = 10;  ///< tolerance of the relative difference of areas, shapes and attribute values, per cent
 
     void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };

@@ -32,11 +32,11 @@ struct RenderOptions {
     bool edges = false;         ///< true: draw the edges of the mesh over the surface
     /// Drawing style; lines: visible contours, creases and borders; wire: edges.
     enum class Drawing { surface, lines, wire, points } drawing = Drawing::surface;
-    bool contours = false;    ///< true: draw contours, creases and borders over the surface
-    bool labels = false;      ///< true: write names beside the object, with leader lines, instead of a legend
-    bool axes = false;        ///< true: draw the directions of the coordinate axes
-    int supersample = 0;      ///< number of samples per pixel in each direction; 0: 1 in a PNG, 2 in SVG and PDF
-    bool deep = false;        ///< true: write a PNG with 16 bits per channel
+    bool contours = false;     ///< true: draw contours, creases and borders over the surface
+    bool labels = false;       ///< true: write names beside the object, with leader lines, instead of a legend
+    bool axes = false;         ///< true: draw the directions of the coordinate axes
+    int supersample = 0;       ///< number of samples per pixel in each direction; 0: 1 in a PNG, 2 in SVG and PDF
+    bool sixteen_bit = false;  ///< true: write a PNG with 16 bits per channel
     double dpi = 0;           ///< pixels per inch of paper; 0: 300 with `print_scale`, else 96 in SVG and PDF and unstated in PNG
     std::string print_scale;  ///< scale on paper such as "1:2" (half the size), see parse_print_scale; empty: as large as fits
     enum class Theme { light, dark } theme = Theme::light;  ///< colours of text and background

@@ -12,12 +12,12 @@ namespace ostraka {
 
 struct CreaseOptions {
     enum class Kind { ridge, hollow, both } kind = Kind::both;  ///< which creases are found
-    double scale = 0.01;           ///< radius over which curvature is averaged, as a share of the bounding box diagonal
-    double background_radius = 3;  ///< radius of the neighbourhood used for comparison, in multiples of the scale
-    double lower_threshold = 3;    ///< lower hysteresis threshold of the response, in robust standard deviations
-    double upper_threshold = 6;    ///< upper hysteresis threshold of the response, in robust standard deviations
-    double floor = 0.03;           ///< min response of a crease (curvature times scale)
-    double shortest = 0.05;        ///< min length of a crease, as a share of the bounding box diagonal
+    double scale = 0.01;          ///< radius over which curvature is averaged, as a share of the bounding box diagonal
+    double background_scale = 3;  ///< radius of the neighbourhood used for comparison, in multiples of the scale
+    double lower_threshold = 3;   ///< lower hysteresis threshold of the response, in robust standard deviations
+    double upper_threshold = 6;   ///< upper hysteresis threshold of the response, in robust standard deviations
+    double floor = 0.03;          ///< min response of a crease (curvature times scale)
+    double shortest = 0.05;       ///< min length of a crease, as a share of the bounding box diagonal
 
     void declare_options(OptionList& list);  ///< declares the options with their names, help texts and ranges
 };

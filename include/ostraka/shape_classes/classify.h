@@ -10,7 +10,7 @@ struct ClassifyOptions {
     MemberFitOptions fit;  ///< options for registering the template to the object
     /// Treatment of objects that have the template's triangles.
     CorrespondenceChoice correspondence = CorrespondenceChoice::automatic;
-    bool attributes = false;  ///< true: an object is also rejected if attribute values are out of the class's ranges
+    bool check_attributes = false;  ///< true: an object is also rejected if attribute values are out of the class's ranges
     /// True: the decision whether the template lies on the object uses only MemberFitOptions::max_off; false: it also uses the
     /// dissimilarity to the members.
     bool strict = false;

@@ -106,7 +106,7 @@ struct ProportionedOptions {
     int objects = 40;  ///< number of statuettes
     /// Names of the sizes that are in fixed proportion to each other, from `size_names`.
     std::vector<std::string> fixed{"arm length", "base diameter"};
-    bool none = false;  ///< true: no size is in fixed proportion
+    bool no_fixed_ratios = false;  ///< true: no size is in fixed proportion
     /// Standard deviations of the logarithm: of the common size, of ratios that are not fixed, and of fixed ratios; standard
     /// deviation of the vertex displacement along the normal, mm.
     double size_deviation = 0.12, ratio_deviation = 0.15, planted_deviation = 0.03, scan_noise = 0.05;

@@ -12,17 +12,14 @@ namespace {
 
 std::string attribute_text(const Attribute& attribute) {
     std::string text = attribute.name;
-    if (attribute.type == AttributeType::semantic) return text + ": " + attribute.note;
-    const bool measured = attribute.type == AttributeType::measure;
-    const std::string& unit = measured ? attribute.measure.unit : attribute.descriptor.unit;
-    if (measured && attribute.measure.value) text += " " + number(*attribute.measure.value);
-    if (!measured)
-        for (std::size_t i = 0; i < std::min<std::size_t>(attribute.descriptor.values.size(), 4); ++i)
-            text += " " + number(attribute.descriptor.values[i]);
-    if (!measured && attribute.descriptor.values.size() > 4) text += " ...";
-    if (!measured && !attribute.descriptor.file.empty()) text += " in " + attribute.descriptor.file;
+    if (const Note* note = attribute.note()) return text + ": " + note->text;
+    const auto [values, unit, stale] = attribute_values(attribute);
+    for (std::size_t i = 0; i < std::min<std::size_t>(values.size(), 4); ++i) text += " " + number(values[i]);
+    if (values.size() > 4) text += " ...";
+    if (const Descriptor* descriptor = attribute.descriptor(); descriptor != nullptr && !descriptor->file.empty())
+        text += " in " + descriptor->file;
     if (!unit.empty()) text += " " + unit;
-    return text + ((measured ? attribute.measure.stale : attribute.descriptor.stale) ? " (stale)" : "");
+    return text + (stale ? " (stale)" : "");
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ struct AnnotationCreases final : Operation {
         p.options.group("With --of colour");
         p.options("contrast", edges.contrast, "difference of the colours of both sides (CIELAB) that each line exceeds somewhere",
                   Range{0.1, 200});
-        p.options("faint", edges.faint, "difference of the colours of both sides at which lines end", Range{0.1, 200});
+        p.options("min-contrast", edges.min_contrast, "difference of the colours of both sides at which lines end",
+                  Range{0.1, 200});
         p.options("texels", edges.texels, "standard deviation of the smoothing", Range{0, 20}, "texels");
         p.report.table("colour edges", integer("id", "id"), text("tag", "tag"), boolean("closed", "closed"),
                        number("length", "length", "length"), number("contrast", "contrast"));
@@ -72,7 +73,7 @@ struct AnnotationCreases final : Operation {
                 "length", found[i].length)("contrast", found[i].contrast, number(found[i].contrast, 3));
         if (found.empty()) {
             report.note(
-                fmt::format("no edge of colour stands out, so {} is not written: try a lower --contrast, --faint or "
+                fmt::format("no edge of colour stands out, so {} is not written: try a lower --contrast, --min-contrast or "
                             "--shortest",
                             output.file()));
             return report.answer_no();

@@ -30,13 +30,14 @@ struct MeasureRefresh final : Operation {
         report.empty_table("measures");
         for (const Annotation& annotation : set.annotations)
             for (const Attribute& attribute : annotation.attributes) {
-                const Measure& m = attribute.measure;
-                if (attribute.type != AttributeType::measure || !m.value || !m.uncertainty) continue;
+                const Measure* m = attribute.measure();
+                if (m == nullptr || !m->value || !m->uncertainty) continue;
                 report
-                    .row("measures")("annotation", annotation.id)("name", attribute.name)("value", *m.value, number(*m.value, 6))(
-                        "uncertainty", *m.uncertainty, number(*m.uncertainty, 3))("pickings", m.repeats.size() + 1)
+                    .row("measures")("annotation", annotation.id)("name", attribute.name)(
+                        "value", *m->value, number(*m->value, 6))("uncertainty", *m->uncertainty, number(*m->uncertainty, 3))(
+                        "pickings", m->repeats.size() + 1)
                     .shown("tag", annotation.tag)
-                    .shown("unit", m.unit);
+                    .shown("unit", m->unit);
             }
         if (refreshed.stale > 0) report.answer_no();
         object.write(std::move(set));

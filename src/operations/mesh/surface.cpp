@@ -33,7 +33,7 @@ struct MeshSurface final : Operation {
                   "outliers are removed: points whose mean distance to their neighbours is more than this factor times the "
                   "median; 0: keep all points",
                   Range{0, 1e6});
-        p.options("carry", carry,
+        p.options("colour-neighbours", colour_neighbours,
                   "number of nearest points from which the colour and intensity of a vertex are interpolated, weighted by the "
                   "inverse distance",
                   Range{1, 1000});
@@ -63,7 +63,7 @@ struct MeshSurface final : Operation {
         report("points", cloud.points.size());
         CloudSurface surface = in_file(cloud_file.file(), [&] { return surface_of(cloud, report); });
         report.notes(surface.notes);
-        MeshExtras extras = carried_to_vertices(cloud, surface.mesh, carry);
+        MeshExtras extras = carried_to_vertices(cloud, surface.mesh, colour_neighbours);
         std::vector<std::string> carried;
         if (!extras.vertex_colours.empty()) carried.emplace_back("colours");
         if (!extras.vertex_values.empty()) carried.emplace_back("intensity");
@@ -107,7 +107,7 @@ struct MeshSurface final : Operation {
     SurfaceMethod method = SurfaceMethod::advancing_front;
     std::optional<double> trim, trim_length;
     double outliers = 0;
-    int carry = 4;
+    int colour_neighbours = 4;
     PoissonOptions poisson;
     CloudOptions front;
 };
