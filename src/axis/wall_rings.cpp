@@ -144,10 +144,11 @@ std::optional<SectionTop> top_of_section(const std::vector<Eigen::Vector2d>& poi
     return SectionTop{centre.x() + section.aside(), squares / double(polar.size() - 4) * slope.dot(inverse * slope)};
 }
 
-/// The ring of a lip, and how far the lip falls off from its top.
+/// A lip.
 struct Lip {
-    WallRing ring;
-    double depth;
+    WallRing ring;     ///< the ring at its top
+    double depth;      ///< how far the lip falls off from its top
+    double roughness;  ///< deviation of its surface from its profile
 };
 /// None for a floor or for a lip that is no end of the walls.
 std::optional<Lip> ring_of_lip(const RevolutionPosterior& posterior, std::size_t sheet, const std::vector<double>& radius,
@@ -211,7 +212,7 @@ std::optional<Lip> ring_of_lip(const RevolutionPosterior& posterior, std::size_t
     finish(posterior, radius, sign * at.radius, at.variance, ring);
     // A lip that is preserved along less than half of the wall is a corner of it.
     if (ring.share < 0.5 * model.arc() / (2 * pi)) return {};
-    return Lip{std::move(ring), best - lowest};
+    return Lip{std::move(ring), best - lowest, model.sheets()[sheet].sigma};
 }
 
 }  // namespace
@@ -263,15 +264,21 @@ WallRing widest_ring(const RevolutionPosterior& posterior) {
 WallRing diameter_ring(const RevolutionPosterior& posterior) {
     const RevolutionModel& model = *posterior.model;
     const std::vector<double> radius = model.radii(posterior.best), height = model.heights(posterior.best);
-    std::optional<WallRing> best;
-    double most = -1;
+    std::vector<Lip> lips;
+    double smoothest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < model.sheets().size(); ++k) {
-        if (model.sheets()[k].wall || !model.sheets()[k].used) continue;
-        // A rounded lip is preferred to a flat cut.
-        if (std::optional<Lip> lip = ring_of_lip(posterior, k, radius, height); lip && lip->depth > most)
-            most = lip->depth, best = std::move(lip->ring);
+        const WallSheet& sheet = model.sheets()[k];
+        if (sheet.wall || !sheet.used) continue;
+        if (std::optional<Lip> lip = ring_of_lip(posterior, k, radius, height)) {
+            smoothest = std::min(smoothest, sheet.sigma);
+            lips.push_back(std::move(*lip));
+        }
     }
-    return best ? *best : widest_ring(posterior);
+    // A straight fracture is level too, but rougher than a lip. Of two smooth ends the more rounded one is the lip.
+    constexpr double rough = 1.5;
+    std::erase_if(lips, [&](const Lip& lip) { return lip.roughness > rough * smoothest; });
+    const auto best = std::max_element(lips.begin(), lips.end(), [](const Lip& a, const Lip& b) { return a.depth < b.depth; });
+    return best == lips.end() ? widest_ring(posterior) : best->ring;
 }
 
 std::vector<double> ring_diameters(const RevolutionPosterior& posterior, const WallRing& ring) {

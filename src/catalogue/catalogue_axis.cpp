@@ -1,7 +1,5 @@
 #include "ostraka/catalogue/catalogue_axis.h"
 
-#include "ostraka/axis/revolution_axis.h"
-
 #include <numeric>
 
 namespace ostraka {
@@ -29,6 +27,7 @@ CatalogueAxis catalogue_axis(const Mesh& mesh, const std::vector<Index>& fractur
         const DiameterEstimate& diameter = revolution.diameters.front();
         result.diameter_low = diameter.low - diameter.value;
         result.diameter_high = diameter.high - diameter.value;
+        result.diameters = revolution.diameters;
         result.rim_direction = revolution.rim_direction;
         result.is_sherd = true;
         return result;

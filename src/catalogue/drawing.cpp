@@ -80,6 +80,16 @@ CatalogueDiameter diameter_at(const Pose& pose, const CatalogueAxis& axis, doubl
     return result;
 }
 
+/// Replaces the diameter read off the drawing by that of the estimator, if it has one of this name.
+void take_estimate(CatalogueDiameter& diameter, const CatalogueAxis& axis, const std::string& name, double factor) {
+    const auto estimate = std::find_if(axis.diameters.begin(), axis.diameters.end(),
+                                       [&](const DiameterEstimate& candidate) { return candidate.name == name; });
+    if (diameter.is_range || estimate == axis.diameters.end()) return;
+    diameter.value = factor * estimate->value;
+    diameter.low = factor * estimate->low;
+    diameter.high = factor * estimate->high;
+}
+
 std::string length_words(double value) { return fmt::format("{:.3g} mm", value); }
 
 void set_diameter(CatalogueEntry& entry, const Pose& pose, const CatalogueAxis& axis, double factor, double max_error) {
@@ -102,6 +112,7 @@ void set_diameter(CatalogueEntry& entry, const Pose& pose, const CatalogueAxis& 
         entry.unknown.emplace_back("the diameter cannot be told: no wall that faces away from the axis is preserved");
         return;
     }
+    take_estimate(diameter, axis, name, factor);
     diameter.name = name;
     diameter.known = diameter.is_range || diameter.high - diameter.low <= 2 * max_error * diameter.value;
     if (diameter.known) return;

@@ -80,7 +80,7 @@ bool has_opening(const Mesh& mesh) {
     double total = 0, border = 0;
     for (const Face f : mesh.faces()) areas[pieces.of_face[f]] += face_area(mesh, f);
     for (const double area : areas) total += area;
-    constexpr double scrap = 0.001, pinhole = 0.05;
+    constexpr double scrap = 0.001, pinhole = 0.2;
     for (const Edge e : mesh.edges()) {
         const Halfedge h = mesh.halfedge(e), o = mesh.opposite(h);
         if (!mesh.is_border(e) || areas[pieces.of_face[mesh.face(mesh.is_border(h) ? o : h)]] < scrap * total) continue;

@@ -34,17 +34,19 @@ struct Sherd {
 };
 
 /// Outer side, lip (a half circle) and inner side of a conical bowl, over an arc in degrees, with noise along the normals. The
-/// rim has radius 100, the wall is 6 thick and 40 high.
-Sherd rim_sherd(double arc, double noise, std::uint64_t seed, double scale = 1, const Vector3d& origin = Vector3d::Zero()) {
+/// rim has radius 100, the wall is 6 thick and 40 high. `roughness`: noise of a straight fracture at its lower end; 0: the wall
+/// is open there.
+Sherd rim_sherd(double arc, double noise, std::uint64_t seed, double scale = 1, const Vector3d& origin = Vector3d::Zero(),
+                double roughness = 0) {
     Random random(seed, 5);
     const Vector2d along = Vector2d(0.35, 1).normalized(), across(along.y(), -along.x());
     const double length = 40, radius = 3, turn = pi * radius;
     const Eigen::Matrix3d rotation = Eigen::AngleAxisd(1.1, Vector3d(1, -2, 0.7).normalized()).toRotationMatrix();
-    const double total = 2 * length + turn;
+    const double total = 2 * length + turn + (roughness > 0 ? 2 * radius : 0);
     const auto columns = static_cast<Index>(std::max(10.0, arc * degree * 100 / 1.2)), rows = static_cast<Index>(total / 1.2);
     Sherd sherd;
     sherd.direction = rotation.col(2);
-    sherd.mesh = build_mesh(grid(columns, rows, false, false, [&](double s, double t) {
+    sherd.mesh = build_mesh(grid(columns, rows, false, roughness > 0, [&](double s, double t) {
         const double at = t * total, angle = (s - 0.5) * arc * degree;
         Vector2d p(100, 0), n = across;
         if (at < length) p += radius * across - (length - at) * along;
@@ -52,9 +54,12 @@ Sherd rim_sherd(double arc, double noise, std::uint64_t seed, double scale = 1, 
             const double q = (at - length) / radius;
             n = std::cos(q) * across + std::sin(q) * along;
             p += radius * n;
-        } else {
+        } else if (at < 2 * length + turn) {
             n = -across;
             p += -radius * across - (at - length - turn) * along;
+        } else {
+            n = -along * roughness / noise;
+            p += (at - 2 * length - turn - radius) * across - length * along;
         }
         p += noise * random.normal() * n;
         const Vector3d q = scale * (rotation * Vector3d(p.x() * std::cos(angle), p.x() * std::sin(angle), p.y()) + origin);
@@ -107,6 +112,16 @@ TEST(RevolutionAxis, IntervalsHoldTheTruth) {
     }
     EXPECT_GE(directions, 9);
     EXPECT_GE(diameters, 9);
+}
+
+TEST(RevolutionAxis, AStraightFractureIsNoRim) {
+    for (const std::uint64_t seed : {51, 52, 53}) {
+        const Sherd sherd = rim_sherd(45, 0.05, seed, 1, Vector3d::Zero(), 0.2);
+        const RevolutionAxis result = axis_of(sherd.mesh);
+        ASSERT_TRUE(result.rim_direction) << result.axis.reason;
+        EXPECT_GT(eigen(*result.rim_direction).dot(sherd.direction), 0.99);
+        EXPECT_NEAR(result.diameters.front().value, sherd.rim, 1.5);
+    }
 }
 
 TEST(RevolutionAxis, ThePartIsBelowItsRim) {

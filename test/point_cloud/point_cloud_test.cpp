@@ -210,6 +210,21 @@ TEST(FragmentFile, PointsBecomeAFragmentWithFacets) {
     EXPECT_NEAR(broken, truth, 0.1 * truth);
 }
 
+TEST(FragmentFile, ALooseScrapDoesNotMakeAFragmentOpen) {
+    const Scratch scratch;
+    TriangleSoup soup = to_soup(test::synthetic_sherd(1, 2, 0, 1).mesh);
+    const auto [a, b, c] = soup.triangles[100];
+    auto apex = soup.points[c];
+    for (double& x : apex) x *= 1.01;
+    soup.points.push_back(apex);
+    soup.triangles.push_back({a, b, static_cast<Index>(soup.points.size() - 1)});  // a third triangle on an edge
+    write_triangles(scratch / "sherd.ply", soup);
+    const FragmentFile file = read_fragment(scratch / "sherd.ply");
+    EXPECT_EQ(file.facets_from, "shape");
+    EXPECT_FALSE(file.notes.empty());
+    EXPECT_TRUE(file.found.shell);
+}
+
 TEST(FragmentFile, AnnotationsOverrideTheShape) {
     const Scratch scratch;
     const test::SyntheticSherd sherd = test::synthetic_sherd(1, 2, 0, 1);

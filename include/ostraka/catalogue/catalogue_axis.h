@@ -2,6 +2,7 @@
 // estimator of axes.
 #pragma once
 
+#include "ostraka/axis/revolution_axis.h"
 #include "ostraka/mesh/mesh.h"
 
 #include <optional>
@@ -20,6 +21,8 @@ struct CatalogueAxis {
     /// Bounds of the 95 % interval of a diameter, relative to the diameter measured about the axis: the true diameter lies
     /// between diameter + `diameter_low` and diameter + `diameter_high`.
     double diameter_low = 0, diameter_high = 0;
+    /// Diameters of a sherd with their intervals, in the mesh's unit (`revolution_axis`); empty: none.
+    std::vector<DiameterEstimate> diameters;
     std::optional<Vector> rim_direction;  ///< unit vector along the axis towards the rim of a sherd; empty: no rim
     bool is_sherd = false;                ///< true: the interval is that of the posterior of a sherd (`revolution_axis`)
 };

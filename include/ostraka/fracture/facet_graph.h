@@ -33,8 +33,8 @@ struct FacetGraph {
     [[nodiscard]] std::size_t count() const { return places.size(); }  ///< number of patches
 };
 
-/// Whether the surface is open: its borders together are at least 5 % of the square root of its area long. Smaller holes let few
-/// rays out. Borders of loose scraps, each with less than a thousandth of the area, do not count. Time: linear.
+/// Whether the surface is open: its borders together are at least a fifth of the square root of its area long. Smaller holes let
+/// few rays out. Borders of loose scraps, each with less than a thousandth of the area, do not count. Time: linear.
 bool has_opening(const Mesh& mesh);
 
 /// Divides the surface of a mesh into about `max_patches` patches at most. Throws Error (input) for a mesh without area.
