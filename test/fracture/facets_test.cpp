@@ -101,7 +101,7 @@ TEST(Facets, AFractureNeedsAnEdgeAroundIt) {
         for (const Point& place : evidence.graph.places) log_odds.push_back(is_likely(place) ? 3 : -5);
         return find_facets(mesh, evidence, log_odds);
     };
-    const Facets ball = answer(build_mesh(test::octahedron_sphere(5)), [](const Point& p) { return p.z() > 0.8; });
+    const Facets ball = answer(build_mesh(test::octahedron_sphere(5)), [](const Point& p) { return p.z() > 0.9; });
     EXPECT_EQ(ball.answer, Facets::Answer::whole);
     EXPECT_EQ(ball.area(Facet::fracture), 0);
     const Facets large = answer(build_mesh(test::octahedron_sphere(5)), [](const Point& p) { return p.z() > 0; });
