@@ -16,7 +16,8 @@ foreach(module IN LISTS OSTRAKA_SANITIZED_MODULES)
   set_source_files_properties(${tests} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   set_target_properties(sanitized_${module} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 16)
   get_target_property(definitions ostraka_test_base INTERFACE_COMPILE_DEFINITIONS)
-  target_compile_definitions(sanitized_${module} PRIVATE ${definitions} RAPIDJSON_HAS_STDSTRING=1)
+  # Matrices allocated in the library are freed here: Eigen must allocate them alike, which it does not do with sanitizers by itself.
+  target_compile_definitions(sanitized_${module} PRIVATE ${definitions} RAPIDJSON_HAS_STDSTRING=1 EIGEN_MALLOC_ALREADY_ALIGNED=1)
   target_compile_options(sanitized_${module} PRIVATE -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all
     -fno-omit-frame-pointer -Wno-subobject-linkage)
   # The linker keeps the first definition of a function: the sanitized one, not that of the library.
