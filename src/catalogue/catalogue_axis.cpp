@@ -29,7 +29,6 @@ CatalogueAxis catalogue_axis(const Mesh& mesh, const std::vector<Index>& fractur
         result.diameter_high = diameter.high - diameter.value;
         result.diameters = revolution.diameters;
         result.rim_direction = revolution.rim_direction;
-        result.is_sherd = true;
         return result;
     }
     constexpr double normal_quantile = 1.96;

@@ -70,7 +70,7 @@ CatalogueDiameter diameter_at(const Pose& pose, const CatalogueAxis& axis, doubl
     }
     result.low = std::max(0.0, result.value + factor * axis.diameter_low);
     result.high = result.value + factor * axis.diameter_high;
-    if (axis.is_sherd) return result;
+    if (axis.is_sherd()) return result;
     // A circle about no given axis is less certain, and does not depend on the model of a surface of revolution.
     const ArcFit fit = fit_arc(grid.arc(row));
     if (fit.circle.radius > 0 && fit.is_round()) {

@@ -34,32 +34,30 @@ struct Sherd {
 };
 
 /// Outer side, lip (a half circle) and inner side of a conical bowl, over an arc in degrees, with noise along the normals. The
-/// rim has radius 100, the wall is 6 thick and 40 high. `roughness`: noise of a straight fracture at its lower end; 0: the wall
-/// is open there.
+/// rim has radius 100, the wall is 6 thick and 40 high. `roughness`: waves of a straight fracture at its lower end; 0: the wall
+/// is open there. `lean`: change of the radius per height.
 Sherd rim_sherd(double arc, double noise, std::uint64_t seed, double scale = 1, const Vector3d& origin = Vector3d::Zero(),
-                double roughness = 0) {
+                double roughness = 0, double lean = 0.35) {
     Random random(seed, 5);
-    const Vector2d along = Vector2d(0.35, 1).normalized(), across(along.y(), -along.x());
+    const Vector2d along = Vector2d(lean, 1).normalized(), across(along.y(), -along.x());
     const double length = 40, radius = 3, turn = pi * radius;
     const Eigen::Matrix3d rotation = Eigen::AngleAxisd(1.1, Vector3d(1, -2, 0.7).normalized()).toRotationMatrix();
-    const double total = 2 * length + turn + (roughness > 0 ? 2 * radius : 0);
+    const double total = 2 * length + turn;
     const auto columns = static_cast<Index>(std::max(10.0, arc * degree * 100 / 1.2)), rows = static_cast<Index>(total / 1.2);
     Sherd sherd;
     sherd.direction = rotation.col(2);
     sherd.mesh = build_mesh(grid(columns, rows, false, roughness > 0, [&](double s, double t) {
         const double at = t * total, angle = (s - 0.5) * arc * degree;
+        const double reach = 1 + roughness / length * (std::sin(7 * s) + 0.4 * std::sin(23 * s));
         Vector2d p(100, 0), n = across;
-        if (at < length) p += radius * across - (length - at) * along;
+        if (at < length) p += radius * across - reach * (length - at) * along;
         else if (at < length + turn) {
             const double q = (at - length) / radius;
             n = std::cos(q) * across + std::sin(q) * along;
             p += radius * n;
-        } else if (at < 2 * length + turn) {
-            n = -across;
-            p += -radius * across - (at - length - turn) * along;
         } else {
-            n = -along * roughness / noise;
-            p += (at - 2 * length - turn - radius) * across - length * along;
+            n = -across;
+            p += -radius * across - reach * (at - length - turn) * along;
         }
         p += noise * random.normal() * n;
         const Vector3d q = scale * (rotation * Vector3d(p.x() * std::cos(angle), p.x() * std::sin(angle), p.y()) + origin);
@@ -116,7 +114,7 @@ TEST(RevolutionAxis, IntervalsHoldTheTruth) {
 
 TEST(RevolutionAxis, AStraightFractureIsNoRim) {
     for (const std::uint64_t seed : {51, 52, 53}) {
-        const Sherd sherd = rim_sherd(45, 0.05, seed, 1, Vector3d::Zero(), 0.2);
+        const Sherd sherd = rim_sherd(45, 0.05, seed, 1, Vector3d::Zero(), 0.3, 0.7);
         const RevolutionAxis result = axis_of(sherd.mesh);
         ASSERT_TRUE(result.rim_direction) << result.axis.reason;
         EXPECT_GT(eigen(*result.rim_direction).dot(sherd.direction), 0.99);

@@ -166,7 +166,7 @@ TEST(CatalogueAxis, IsThatOfTheWallsWithoutFractures) {
     const Mesh sherd = build_mesh(rim_sherd(50));
     const CatalogueAxis axis = catalogue_axis(sherd);
     ASSERT_TRUE(axis.found) << axis.reason;
-    EXPECT_TRUE(axis.is_sherd);
+    EXPECT_TRUE(axis.is_sherd());
     EXPECT_LT(axis.diameter_low, 0);
     EXPECT_GT(axis.diameter_high, 0);
     std::vector<Index> all(sherd.number_of_faces());
@@ -175,7 +175,7 @@ TEST(CatalogueAxis, IsThatOfTheWallsWithoutFractures) {
     EXPECT_FALSE(none.found);
     EXPECT_NE(none.reason.find("fracture"), std::string::npos);
     // A whole vessel has no posterior of a sherd.
-    EXPECT_FALSE(catalogue_axis(build_mesh(bowl())).is_sherd);
+    EXPECT_FALSE(catalogue_axis(build_mesh(bowl())).is_sherd());
 }
 
 TEST(CatalogueEntry, ConvertsUnits) {

@@ -24,7 +24,9 @@ struct CatalogueAxis {
     /// Diameters of a sherd with their intervals, in the mesh's unit (`revolution_axis`); empty: none.
     std::vector<DiameterEstimate> diameters;
     std::optional<Vector> rim_direction;  ///< unit vector along the axis towards the rim of a sherd; empty: no rim
-    bool is_sherd = false;                ///< true: the interval is that of the posterior of a sherd (`revolution_axis`)
+
+    /// True if the interval is that of the posterior of a sherd (`revolution_axis`).
+    [[nodiscard]] bool is_sherd() const { return !diameters.empty(); }
 };
 
 /// The axis of the surface of revolution fitted to all faces except `fractures` (`revolution_axis`). A sherd has the 95 %
